@@ -88,16 +88,17 @@ struct Program {
 };
 
 /// A Deviation is the actual minus the nominal position of an axis. A Correction is the value that is added
-/// to the command of an axis. The unit of both is counts of the axis. Deviation and Correction are separate
-/// types. Because Deviation and Correction are separate types, the compiler detects a wrong sign.
+/// to the command of an axis. Deviation and Correction are in counts of the axis. Deviation and
+/// Correction are separate types. Because Deviation and Correction are separate types, the compiler
+/// detects a wrong sign.
 struct Deviation {
   std::int32_t counts = 0;
 };
 struct Correction {
   std::int32_t counts = 0;
 };
-/// Converts a deviation to a correction. No other function does this conversion. -INT32_MIN becomes
-/// INT32_MAX. Real-time safe.
+/// Converts a deviation to a correction. No other function converts a deviation to a correction.
+/// -INT32_MIN becomes INT32_MAX. Real-time safe.
 constexpr Correction correction_for(Deviation deviation) noexcept {
   return Correction{deviation.counts == INT32_MIN ? INT32_MAX : -deviation.counts};
 }
@@ -126,7 +127,8 @@ std::int32_t channel_value(const Channel& channel, std::int64_t value) noexcept;
 
 struct ShareProgram;
 
-/// Start values of a tick. With these values, another thread can execute the tick again.
+/// Start values of the equation in one tick. With these start values, another thread can execute
+/// the equation of the tick again.
 struct EquationState {
   static constexpr std::uint32_t kMostChannels = 256;  // largest number of channels of a program whose shares
                                                        // can be displayed
@@ -157,7 +159,8 @@ class Compensator {
   /// a change of the program causes no step of the correction. Not real-time safe.
   void start_from(std::uint32_t axis, Correction held) noexcept { slew_[axis].start_from(held.counts); }
 
-  /// Resets the lags and the slew limits. The next step then starts from zero correction. Not real-time safe.
+  /// Resets the lags and the slew limits. After a reset, the next call of step() starts from zero
+  /// correction. Not real-time safe.
   void reset() noexcept;
 
   /// Copies the channels and lags at the start of the last step. The copied state is empty for a program with
@@ -166,8 +169,9 @@ class Compensator {
   void state(EquationState& state) const noexcept;
 
   /// After this call, step() executes the compiled C++ code `equation` instead of interpreting the program.
-  /// The command `vernier compile` wrote this code from the same program. The corrections are identical to
-  /// the last bit. The compiled code needs a sixth to a third of the instructions. Not real-time safe.
+  /// The command `vernier compile` wrote this code from the same program. The compiled code and the
+  /// interpreted program give identical corrections, to the last bit. The compiled code needs a
+  /// sixth to a third of the instructions of the interpreted program. Not real-time safe.
   void use_printed(PrintedEquation equation) noexcept { printed_ = equation; }
   bool printed() const noexcept { return printed_ != nullptr; }
 

@@ -7,8 +7,8 @@
 
 namespace vernier {
 
-/// The number 1 in the format of a fraction of a segment (Q30). In this format (Q30), the number 1 is the far
-/// end of the segment.
+/// The number 1 in the format of a fraction of a segment (Q30). In the format Q30, the fraction 1
+/// is the far end of the segment.
 constexpr std::int32_t kFractionOne = std::int32_t{1} << 30;
 
 /// The interval between two neighbouring stations of a table, in counts of the position's register. The ends
@@ -45,10 +45,10 @@ static_assert(offsetof(Wrap, first) == 0 && offsetof(Wrap, period) == 4 && offse
 ///
 /// A record of a segment contains the four words of its Segment, and then the coefficients of each column in
 /// the format of the column, for increasing powers of the fraction. With degree 1 a column has two
-/// coefficients (value at the near station, change to the far station); with degree 3 it has four. Station i
-/// is the start of segment i, and the last station is the end of the last segment. Before the first station,
-/// the table gives the value of the first station. After the last station, it gives the value of the last
-/// station.
+/// coefficients (value at the near station, change to the far station); with degree 3 a column has
+/// four. Station i is the start of segment i, and the last station is the end of the last segment.
+/// Before the first station, the table gives the value of the first station. After the last
+/// station, the table gives the value of the last station.
 struct ErrorTable {
   const std::int32_t* records = nullptr;
   std::uint32_t pieces = 0;   // > 0
@@ -147,7 +147,7 @@ inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t
 }
 
 /// Interpolates like look_up<kDegree, kColumns>, with the degree and number of columns read from the table at
-/// run time. The values are identical to those of the other form. Real-time safe.
+/// run time. Both forms of look_up() give identical values. Real-time safe.
 inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
   const std::int32_t held = higher(position, table.records[0]);
   const std::int32_t* const record = table.record(piece_of(table, held));
@@ -162,8 +162,8 @@ inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t
 }
 
 /// Returns the position changed by whole periods into [first, first + period). wrapped() is exact if the
-/// verifier accepted the wrap for the range of the position. Then the estimated number of periods has an
-/// error of at most 1. Real-time safe.
+/// verifier accepted the wrap for the range of the position. If the verifier accepted the wrap, the
+/// estimated number of periods has an error of at most 1. Real-time safe.
 inline std::int32_t wrapped(const Wrap& wrap, std::int32_t position) noexcept {
   const std::int64_t distance = std::int64_t{position} - wrap.first;
   const std::int64_t periods = (distance * wrap.reciprocal) >> wrap.shift;

@@ -33,16 +33,17 @@ constexpr std::int64_t round_shift(std::int64_t value, unsigned shift) noexcept 
 /// the width of Word.
 using Word = std::int_fast32_t;
 
-/// Converts a value that the caller has proved to fit int32 to a Word. If Word has 64 bits, this needs no
-/// instruction. Real-time safe.
+/// Converts a value that the caller has proved to fit int32 to a Word. If Word has 64 bits, the
+/// conversion to a Word needs no instruction. Real-time safe.
 constexpr Word word_of(std::int64_t value) noexcept { return static_cast<Word>(value); }
 
 /// Returns the low 32 bits of a value that the caller has proved to fit int32 (program verifier). Real-time
 /// safe.
 constexpr std::int32_t narrow(std::int64_t value) noexcept { return static_cast<std::int32_t>(value); }
 
-/// Returns the value if it fits int32. If the value does not fit, the function returns the nearest limit of
-/// int32 and sets `saturated`. The function saturate() never clears `saturated`. Real-time safe.
+/// Returns the value if it fits int32. If the value does not fit int32, saturate() returns the
+/// nearest limit of int32 and sets `saturated`. The function saturate() never clears `saturated`.
+/// Real-time safe.
 constexpr std::int32_t saturate(std::int64_t value, bool& saturated) noexcept {
   const std::int64_t limited = clamp<std::int64_t>(value, INT32_MIN, INT32_MAX);
   saturated = saturated || limited != value;

@@ -6,8 +6,8 @@
 
 namespace vernier {
 
-/// State of a first-order lag, with 30 fraction bits below the LSB of the input. With these bits, a lag with
-/// a time constant of hours still changes at 1 kHz.
+/// State of a first-order lag, with 30 fraction bits below the LSB of the input. With 30 fraction bits, a
+/// lag with a time constant of hours still follows its input at a cycle of 1 kHz.
 struct LagState {
   std::int64_t value = 0;
 };

@@ -13,8 +13,8 @@ class Clock {
   virtual ~Clock() = default;
   /// Returns the present time. Real-time safe.
   virtual InstantNs now() noexcept = 0;
-  /// Waits until the time `due`. If `due` is in the past, the function returns immediately. The function
-  /// sleep_until() returns kRefused if the timer failed. Real-time safe.
+  /// Waits until the time `due`. If the wake-up time `due` is in the past, sleep_until() returns
+  /// immediately. The function sleep_until() returns kRefused if the timer failed. Real-time safe.
   virtual HalFault sleep_until(InstantNs due) noexcept = 0;
 };
 

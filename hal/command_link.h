@@ -19,8 +19,9 @@ enum class CommandGiven : std::uint8_t {
 class CommandHandler {
  public:
   virtual ~CommandHandler() = default;
-  /// Sets the connection of the following requests. The link does not use the same number for a later
-  /// connection. A link without connections does not call comes_over(). Not real-time safe.
+  /// Sets the number of the connection over which the following requests come. A link uses each
+  /// connection number only once. A link without connections does not call comes_over(). Not
+  /// real-time safe.
   virtual void comes_over(std::uint64_t connection) { static_cast<void>(connection); }
   /// Reports that a connection has ended. Not real-time safe.
   virtual void ends(std::uint64_t connection) { static_cast<void>(connection); }
@@ -53,8 +54,9 @@ class CommandLink {
   virtual ~CommandLink() = default;
   /// Waits for requests for at most `wait`, and answers them. serve() never waits for a peer that stops
   /// within a request or does not read the reply. The function serve() returns kRefused if the connection was
-  /// lost. This call or the next call of serve() opens a lost connection again. An error of the peer is not a
-  /// fault of the board. Not real-time safe.
+  /// lost. The same call of serve() that lost the connection, or the next call, opens the
+  /// connection again. An error of the peer (client) is not a fault of the board. Not real-time
+  /// safe.
   virtual HalFault serve(CommandHandler& handler, TimeUs wait) noexcept = 0;
   /// Writes the handles on which the operating system can wait for a request to `handles`, at most `room`
   /// handles. handles() returns the number of handles; 0 if the link has no handle. Not real-time safe.

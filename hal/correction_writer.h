@@ -9,8 +9,8 @@ namespace vernier {
 class CorrectionWriter {
  public:
   virtual ~CorrectionWriter() = default;
-  /// `correction`: in counts of the axis (1 nm, or 2^-32 turn). If the write fails, the device has either the
-  /// old or the new value. Real-time safe.
+  /// `correction`: in counts of the axis (1 nm, or 2^-32 turn). If the write of a correction fails,
+  /// the device has either the old or the new correction. Real-time safe.
   virtual HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept = 0;
   /// Returns the value that the device can output for a correction: the correction itself, or the end of the
   /// device's range. Real-time safe.

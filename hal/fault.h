@@ -4,7 +4,8 @@
 
 namespace vernier {
 
-/// Reason why a device could not execute a call. If a read fails, its result argument is not changed.
+/// Reason why a device could not execute a call. If reading a device fails, the function does not
+/// change its result argument.
 enum class HalFault : std::uint8_t {
   kNone,
   kNoReading,  // the device did not answer in time, or there is no reading yet

@@ -10,8 +10,8 @@ namespace vernier {
 class InputReader {
  public:
   virtual ~InputReader() = default;
-  /// Begins a tick of the firmware. Each input is read once until the next call. The function begin_tick()
-  /// never waits. Real-time safe.
+  /// Begins a tick of the firmware. In one tick of the firmware, each input is read only once. The
+  /// function begin_tick() never waits. Real-time safe.
   virtual void begin_tick() noexcept {}
   /// Reads the newest value of an input, in 1e-6 of the unit that the correction image declares. The function
   /// read_input() returns kNoReading if the sensor gives no reading. Real-time safe.

@@ -10,8 +10,8 @@ class TickSync {
  public:
   virtual ~TickSync() = default;
   /// Waits for the next sync signal. The function wait_for_sync() returns kNoReading if no signal came until
-  /// `latest`. If the device is defective, the result is kRefused and is returned immediately. If several
-  /// signals came since the last call, they count as one signal. Real-time safe.
+  /// `latest`. If the sync device is defective, wait_for_sync() returns kRefused immediately. If
+  /// several signals came since the last call, they count as one signal. Real-time safe.
   virtual HalFault wait_for_sync(InstantNs latest) noexcept = 0;
 };
 

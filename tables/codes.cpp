@@ -84,7 +84,7 @@ const char* describe(UploadFault fault) noexcept {
     case UploadFault::kNoTrial:
       return "no image is on trial";
     case UploadFault::kTooMuchWork:
-      return "the image needs more work than this board can do in its share of a tick";
+      return "the image needs more operations in each tick than this board can execute";
     case UploadFault::kOtherBoard:
       return "the image is signed for another board or class";
     case UploadFault::kSecurity:

@@ -8,7 +8,8 @@
 
 namespace vernier {
 
-/// The last settings of an operator, and the latched fault of a board. A start of the board restores them.
+/// The last settings of an operator, and the latched fault of a board. A start of the board
+/// restores the operator's settings and the latched fault.
 struct OperatorState {
   std::uint8_t out = 0;      // 1: an operator deactivated the correction
   std::uint8_t holding = 0;  // 1: an operator held the corrections
@@ -47,7 +48,8 @@ constexpr std::uint32_t kOperatorPlace = 2, kOperatorRecordCount = 2;
 /// therefore keeps the weight of each axis. The number of an axis is never 0. Not real-time safe.
 std::uint32_t operator_axis(const char* name, std::uint32_t size) noexcept;
 
-/// A record, and the number of the place in the slot store to which it must be written.
+/// A record of the operator's settings, and the number of the place in the slot store to which the
+/// record must be written.
 struct OperatorChange {
   std::uint32_t place;
   OperatorRecord record;
@@ -70,12 +72,13 @@ class OperatorRecords {
   /// operator).
   bool known() const noexcept { return now_.sequence != 0; }
   const OperatorState& state() const noexcept { return now_.state; }
-  /// True if load() found the state in only one of the two records. Then the second write was not done, or
-  /// the first write is not yet on the medium.
+  /// True if load() found the state in only one of the two records. If only one record has the
+  /// state, the second write was not done, or the first write is not yet on the medium.
   bool once() const noexcept { return once_; }
-  /// Returns the change that is necessary to store another state. Not real-time safe.
+  /// Returns the record that must be written to store another state of the operator's settings. Not
+  /// real-time safe.
   OperatorChange change_to(const OperatorState& state) const noexcept;
-  /// Informs the object that a change is now on the medium. Not real-time safe.
+  /// Informs the object that a changed record is now on the medium. Not real-time safe.
   void stored(const OperatorChange& change) noexcept;
 
  private:

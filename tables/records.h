@@ -64,8 +64,8 @@ enum TouchFlag : std::uint8_t {
 };
 
 /// Data of one touch of the probe for other threads. The axes are in the order of the board. The values are
-/// in counts. The counters state the losses up to this touch. With them a reader detects whether touches are
-/// missing.
+/// in counts. The counters state the losses up to this touch. With these counters a reader detects
+/// whether touches are missing.
 struct TouchRecord {
   std::int64_t time_ns = 0;              // time of the contact, as t of the machine file
   std::int64_t position[kMaxAxes] = {};  // position in the counts of the controller

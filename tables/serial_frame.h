@@ -24,8 +24,8 @@ std::uint32_t write_frame(const std::uint8_t* message, std::uint32_t size, std::
 /// Finds the messages in the bytes that are received from a serial line.
 class FrameReader {
  public:
-  /// Takes the next byte. Returns true if a message is complete with this byte. The function message() is
-  /// valid until the next call of take(). Not real-time safe.
+  /// Takes the next byte. Returns true if a message is complete with this byte. The result of
+  /// message() is valid until the next call of take(). Not real-time safe.
   bool take(std::uint8_t byte) noexcept;
   const std::uint8_t* message() const noexcept { return bytes_; }
   std::uint32_t size() const noexcept { return size_; }

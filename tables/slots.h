@@ -10,8 +10,8 @@ namespace vernier {
 /// Value for "no slot": there is no confirmed image, or no image on trial.
 constexpr std::uint8_t kNoSlot = 0xff;
 constexpr std::uint32_t kSlotCount = 2;
-/// Number of copies of the record in the store. A change overwrites the older copy first, and then the other
-/// copy.
+/// Number of copies of the record in the store. A change overwrites the older copy of the slot
+/// record first, and then the other copy.
 constexpr std::uint32_t kSlotRecordCount = 2;
 
 /// Record of the two image slots of a board: the confirmed slot and the slot on trial. The record is
@@ -62,16 +62,18 @@ constexpr std::uint32_t kSlotMagicV1 = 0x544f4c53;  // "SLOT"
 
 using SlotPlace = StoredPlace<SlotRecord>;
 
-/// A record, and the number of the place (0 or 1) in the slot store to which it must be written.
+/// A slot record, and the number of the place (0 or 1) in the slot store to which the record must
+/// be written.
 struct SlotChange {
   std::uint32_t place;
   SlotRecord record;
 };
 
-/// State machine of the two slots, without access to the medium. Slots returns the record that must be stored
-/// for a change. Slots applies a change only after its record is stored. The stored records are intact if
-/// both are valid and differ by one change, or if there is only the first record. After a power failure at
-/// any byte of any write, the state is the state before or after the change. If the pair of records is
+/// State machine of the two slots, without access to the medium. The class Slots returns the record
+/// that must be stored for a change of the slots. The class Slots applies a change of the slots
+/// only after the record of the change is stored. The stored records are intact if both are valid
+/// and differ by one change, or if there is only the first record. After a power failure at any
+/// byte of any write, the state is the state before or after the change. If the pair of records is
 /// damaged, it is the state before the change.
 ///
 ///   confirmed A ── (image written to B) ── try ──► confirmed A, trial B ── confirm ──► confirmed B
@@ -107,11 +109,12 @@ class Slots {
   /// Returns the change that confirms the image on trial. Call confirm() only while an image is on trial. Not
   /// real-time safe.
   SlotChange confirm() const noexcept;
-  /// Returns the change that reverts the image on trial. Not real-time safe.
+  /// Returns the record that must be written to revert the image on trial. Not real-time safe.
   SlotChange revert() const noexcept;
-  /// Returns the change that writes the present state once more, to the other place. Not real-time safe.
+  /// Returns the record that writes the present state of the slots once more, to the other place of
+  /// the store. Not real-time safe.
   SlotChange again() const noexcept { return change_to(now_); }
-  /// Informs the object that a change is now on the medium. Not real-time safe.
+  /// Informs the object that a changed slot record is now on the medium. Not real-time safe.
   void stored(const SlotChange& change) noexcept;
 
  private:

@@ -34,8 +34,8 @@ template <class Record>
 ByAge<Record> by_age(const StoredPlace<Record>& first, const StoredPlace<Record>& second) noexcept {
   const bool one = first.written && is_valid(first.record), two = second.written && is_valid(second.record);
   if (!one && !two) return {};
-  // The sequence numbers of one store differ by one. The unsigned difference of two sequence numbers is also
-  // correct when the numbers wrap around.
+  // The sequence numbers of the two records in one store differ by one. The unsigned difference of
+  // two sequence numbers is also correct when the numbers wrap around.
   const bool second_counts = two && (!one || second.record.sequence - first.record.sequence < UINT32_MAX / 2);
   return {second_counts ? &second : &first, second_counts ? &first : &second, second_counts, one && two};
 }

@@ -74,7 +74,7 @@ constexpr std::uint8_t kRequestMagic[8] = {'V', 'E', 'R', 'N', 'C', 'M', 'D', '2
 
 constexpr std::uint32_t kPublicKeyBytes = 32;
 
-/// Data that a board signs with its key to prove its identity: Ed25519ph of these 80 bytes.
+/// Data (80 bytes) that a board signs with its key, by Ed25519ph, to prove its identity.
 struct IdentityHead {
   std::uint8_t magic[8];         // kIdentityMagic
   std::uint8_t asked_nonce[32];  // nonce of the client, which is new for each request

@@ -35,8 +35,8 @@ struct TouchCounts {
 /// The computing time of TouchFilter is limited, and it uses no heap memory.
 class TouchFilter {
  public:
-  /// `settle`: settling time after a change of the contact, >= 0. Later edges within this time belong to the
-  /// same contact. Not real-time safe.
+  /// `settle`: settling time after a change of the contact, >= 0. Later edges within the settling
+  /// time belong to the same contact of the probe. Not real-time safe.
   explicit TouchFilter(InstantNs settle = InstantNs(1'000'000)) noexcept : settle_(settle) {}
 
   /// Processes one edge of the probe signal. `at`: time of the edge, not earlier than the previous edge. The

@@ -36,7 +36,7 @@ const char* const kUsage =
     "  --seconds S     stop after S seconds (default: never with --board, 10 with --simulate)\n"
     "  --seed N        seed of the simulated motion (default 1)\n"
     "  --no-realtime   do not ask for SCHED_FIFO, locked memory and shallow idle states\n"
-    "  --json FILE     result for programs; - is standard output\n"
+    "  --json FILE     result as JSON, for programs; - is standard output\n"
     "  -V, --version   print the version and end\n"
     "Exit status: 0 done, 1 bad input or usage, 2 a fault latched, a device is missing or a limit was not "
     "met.\n";

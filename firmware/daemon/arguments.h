@@ -17,8 +17,8 @@ extern const char* const kUsage;
 /// Text with the name and version of the program: "vernierd 0.1.0 (commit)".
 extern const char* const kVersion;
 
-/// Reads the command line arguments. Returns false if they are not valid; kUsage is the help text. Not
-/// real-time safe.
+/// Reads the command line arguments. Returns false if the command line arguments of vernierd are
+/// not valid; kUsage is the help text. Not real-time safe.
 bool parse_arguments(int argc, char** argv, Arguments& arguments);
 
 }  // namespace vernier

@@ -19,7 +19,7 @@ inline constexpr TimeUs kPatience(1'000'000);
 
 /// Waits for one frame of an axis on the bus, and returns a description of the frame.
 std::string hear_axis(Clock& clock, CanAxes& bus, std::uint32_t axis);
-/// Waits for one reading of an axis. Returns false if no reading came.
+/// Waits for one reading of an axis. Returns false if the axis gave no reading.
 bool hear_position(Clock& clock, AxisReader& axes, std::uint32_t axis);
 /// Waits for one scan of a sensor, and returns a description of the scan.
 std::string hear_scan(Clock& clock, IioBuffer& buffer, std::uint32_t channel);

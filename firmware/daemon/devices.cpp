@@ -344,7 +344,7 @@ void Devices::Parts::look_for_calibration(const AxisEntry& axis) {
   note_file("axis." + name + ".output  calibration " + path,
             std::filesystem::is_regular_file(path)
                 ? ""
-                : "the calibration file does not exist; vernierd --calibrate " + name + " makes it");
+                : "the calibration file does not exist; make this file with vernierd --calibrate " + name);
 }
 
 std::vector<Route<InputReader>> Devices::Parts::make_inputs() {
@@ -516,20 +516,26 @@ std::vector<std::string> Devices::not_looked_at() const {
     const std::string name = std::string("axis.") + axis.wiring.name.c_str();
     if (axis.position.kind != "sim")
       lines.push_back(
-          name + ".position: one reading came, but the check does not know whether this position is right");
+          name +
+          ".position: a reading has arrived, but the check cannot test whether this position is right");
     const auto output = std::find_if(parts_->real_outputs.begin(), parts_->real_outputs.end(),
                                      [&](const RealOutput& one) { return &file.axes[one.axis] == &axis; });
     if (output != parts_->real_outputs.end())
       lines.push_back(name + ".output: what reaches the drive; " + output->device->trial());
   }
-  if (!file.probe.kind.empty()) lines.emplace_back("probe.line: whether the line changes at a touch");
+  if (!file.probe.kind.empty())
+    lines.emplace_back("probe.line: whether the signal line of the probe changes at a touch");
   if (!file.enable.kind.empty()) lines.emplace_back("digital.enable: whether the line changes");
-  if (!file.healthy.kind.empty()) lines.emplace_back("digital.healthy: whether the controller reads it");
+  if (!file.healthy.kind.empty())
+    lines.emplace_back("digital.healthy: whether the machine controller reads this output line");
   if (!file.watchdog.empty())
-    lines.emplace_back("board.watchdog: whether it resets the computer; opening it would start it");
-  if (!file.links.empty()) lines.emplace_back("link: whether a client reaches it");
+    lines.emplace_back(
+        "board.watchdog: whether the watchdog resets the computer; opening the device would start the "
+        "watchdog");
+  if (!file.links.empty())
+    lines.emplace_back("link: whether a client can connect to the board over this link");
   lines.emplace_back("store: whether the confirmed image can be loaded");
-  lines.emplace_back("priority: whether the system grants it");
+  lines.emplace_back("priority: whether the operating system grants the real-time priority");
   return lines;
 }
 
@@ -682,8 +688,8 @@ void Devices::say_held() const {
     if (counts.skipped + counts.missing + counts.malformed + counts.broken == 0) continue;
     std::fprintf(
         stderr,
-        "vernierd: buffer of %s: %llu scans, %llu skipped, %llu ticks without one, %llu malformed, %llu "
-        "ticks broken\n",
+        "vernierd: buffer of %s: %llu scans, %llu skipped, %llu ticks without a scan, %llu malformed scans, "
+        "%llu ticks with a broken buffer\n",
         device.c_str(), static_cast<unsigned long long>(counts.scans),
         static_cast<unsigned long long>(counts.skipped), static_cast<unsigned long long>(counts.missing),
         static_cast<unsigned long long>(counts.malformed), static_cast<unsigned long long>(counts.broken));

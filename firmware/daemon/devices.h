@@ -58,8 +58,8 @@ class Devices {
   /// false if `stop` is set and a correction still remains ten seconds later. Not real-time safe.
   bool take_left_overs_out(const std::atomic<bool>& stop) noexcept;
   /// Opens the hardware watchdog if the board file names a watchdog. Returns an error text, or an empty text
-  /// if there is no error. In the latter case the caller must trigger the watchdog, and switch it off at an
-  /// orderly end. Not real-time safe.
+  /// if there is no error. If there is no error, the caller must trigger the watchdog, and switch
+  /// the watchdog off at an orderly end. Not real-time safe.
   std::string start_watchdog();
   void feed_watchdog() noexcept;
   void disarm_watchdog() noexcept;

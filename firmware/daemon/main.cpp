@@ -144,8 +144,8 @@ int check_devices(Devices& devices, const BoardFile& file) {
 
 int say_left_over() {
   std::fputs(
-      "vernierd: not at zero: the program ended before the outputs had removed the values of an earlier "
-      "run\n",
+      "vernierd: an output is not at zero: the program ended before the outputs had removed the values of an "
+      "earlier run\n",
       stderr);
   return kAnswerIsNo;
 }
@@ -156,7 +156,7 @@ int take_to_zero(Devices& devices) {
   int missing = 0;
   for (const DeviceFinding& finding : devices.findings())
     if (finding.device.find(".output ") != std::string::npos && !finding.missing.empty()) {
-      std::fprintf(stderr, "vernierd: not at zero: %s: %s\n", finding.device.c_str(),
+      std::fprintf(stderr, "vernierd: an output is not at zero: %s: %s\n", finding.device.c_str(),
                    finding.missing.c_str());
       ++missing;
     }
@@ -359,7 +359,7 @@ int run_board(const Arguments& arguments) {
   duties = nullptr;
   devices.say_held();
   if (service->runner().lost_syncs() > 0)
-    std::fprintf(stderr, "vernierd: the sync was lost %llu times\n",
+    std::fprintf(stderr, "vernierd: the sync signal was lost %llu times\n",
                  static_cast<unsigned long long>(service->runner().lost_syncs()));
   return finish(arguments, service->runner(), service->cycle(), grant);
 }

@@ -78,9 +78,13 @@ class RegisterUses {
 void require_settings_of_first(const SignalSource& first, const SignalSource& source) {
   for (const char* const name : {"echo", "period_ms", "timeout_ms", "baud"})
     if (source.numbers.contains(name) && source.numbers.at(name) != first.number(name, -1))
-      source.fail(std::string(name) + " differs from " + first.where + ", which has the same block");
+      source.fail(std::string(name) +
+                  ": all axes of one register block need the same value; the value differs from that of " +
+                  first.where);
   if (source.texts.contains("parity") && source.text("parity") != first.text("parity", ""))
-    source.fail("parity differs from " + first.where + ", which has the same block");
+    source.fail(
+        "parity: all axes of one register block need the same value; the value differs from that of " +
+        first.where);
 }
 
 /// Adds the blocks of the outputs, each with all places of its axes, then the echoes.

@@ -72,9 +72,9 @@ void refuse_further_rpdos(const SignalSource& source, std::uint32_t rpdo, std::u
       source.fail_at("rpdo", std::string("rpdo: the identifier belongs to ") + use.use + ", node " +
                                  std::to_string(rpdo & kNodeMask));
     if (use.first != kRpdo4.first && source.text("pdo_test", "sdo") == "none")
-      source.fail_at("rpdo", std::string("rpdo: ") + use.use +
-                                 " have a controlword by default, and with pdo_test = \"none\" the board "
-                                 "does not read the mapping of this RPDO: use pdo_test = \"sdo\", or RPDO 4");
+      source.fail_at("rpdo", std::string("rpdo: with pdo_test = \"none\" the board does not read the mapping "
+                                         "of this RPDO: use pdo_test = \"sdo\", or RPDO 4 (by default ") +
+                                 use.use + " have a controlword)");
   }
 }
 
@@ -88,7 +88,7 @@ void refuse_equal_identifiers(const SignalSource& source, const CanopenSettings&
     for (const auto* b = a + 1; b != std::end(all); ++b)
       if (a->second == b->second)
         source.fail(std::string(a->first) + " and " + b->first +
-                    " have the same identifier; each must have its own");
+                    ": two CAN frames have the same identifier; each frame must have its own");
 }
 
 CanopenSettings settings_of(const SignalSource& source) {
@@ -183,10 +183,9 @@ void require_one_unit(const SignalSource& position, const SignalSource& output) 
     const bool same = position.texts.contains(name) ? position.text(name) == output.text(name)
                                                     : position.number(name) == output.number(name);
     if (!same)
-      output.fail_at(name, std::string(name) + ": the position of this axis is from another drive (" +
-                               position.where +
-                               "). If this is meant, take the position from the frame of that drive with "
-                               "kind = \"can\"");
+      output.fail_at(
+          name, std::string(name) + ": the position of this axis is from another drive (" + position.where +
+                    "). To use the position of that drive, read its frame with a position of kind = \"can\"");
   }
   const double of_position = position.number("scale"), of_output = output.number("scale");
   constexpr double kSame = 1e-9;  // relative; the same decimal number
@@ -194,12 +193,14 @@ void require_one_unit(const SignalSource& position, const SignalSource& output) 
   if (of_position == 0 || of_output <= 0) return;
   if (std::abs(std::abs(of_position) - of_output) > kSame * of_output)
     output.fail_at("scale", "scale: the position of this drive has a count of another size (" +
-                                position.where + "); position and offset of a drive have one unit");
+                                position.where +
+                                "); position and offset of a drive have the same position unit");
   if ((of_position < 0) != is_inverted(output))
-    output.fail_at("polarity", "polarity: the position counts " +
-                                   std::string(of_position < 0 ? "against" : "with") +
-                                   " the axis (the sign of scale in " + position.where +
-                                   "), so polarity must be " + (of_position < 0 ? "inverted" : "normal"));
+    output.fail_at(
+        "polarity",
+        (of_position < 0 ? "polarity must be inverted, because the scale of the position is below 0 in "
+                         : "polarity must be normal, because the scale of the position is above 0 in ") +
+            position.where);
 }
 
 /// Refuses an identifier of another use of the bus that is one of these drives.
@@ -211,8 +212,9 @@ void refuse_identifiers_of(const std::vector<DriveUse>& drives, const SignalSour
     if (drive.source->text("interface") != source.text("interface")) continue;
     if (id == of.rpdo || id == of.sync || id == of.emergency || id == of.heartbeat ||
         (with_tpdo && id == of.tpdo))
-      source.fail_at(name, std::string(name) + ": a frame of the drive of " + drive.source->where +
-                               " has this identifier");
+      source.fail_at(name, std::string(name) +
+                               ": this identifier is already used by a frame of the drive of " +
+                               drive.source->where);
   }
 }
 
@@ -279,14 +281,14 @@ void require_sync_of_drives(const BoardFile& board) {
     const std::int64_t tick_us = board.service.upload.tick.count;
     if (source.whole("sync_us", 100, 100'000) != tick_us)
       source.fail_at("sync_us", "sync_us must be tick_us (" + std::to_string(tick_us) +
-                                    "): the drive takes one offset with each SYNC");
+                                    "): a drive accepts one offset with each SYNC frame");
     if (board.sync.kind != "can" || board.sync.text("interface") != interface ||
         board.sync.whole("id", kSync, 0, (1 << 29) - 1) != settings.sync)
       source.fail("the ticks do not follow SYNC; add sync = { kind = \"can\", interface = \"" + interface +
                   "\" } to [board]");
     for (const DriveUse& other : used)
       if (other.settings.rpdo == settings.rpdo && other.source->text("interface") == interface)
-        source.fail("rpdo: the identifier is that of " + other.source->where + " too");
+        source.fail("rpdo: this identifier is already used by the RPDO of " + other.source->where);
     used.push_back({&source, settings});
   }
   refuse_identifiers_of(used, board);

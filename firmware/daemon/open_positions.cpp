@@ -66,9 +66,9 @@ std::unique_ptr<ModbusAxes> open_modbus_axes(const std::vector<PositionAxis>& ax
     if (settings.sequence == address || settings.sequence == address + 1)
       source.fail_at("sequence", "sequence is a register of the position");
     if (missing[k].count < kPeriodsWithout * settings.period.count)
-      source.fail("missing_ticks must be at least " + std::to_string(kPeriodsWithout) + " periods: here " +
-                  std::to_string(kPeriodsWithout * settings.period.count / 1000) +
-                  " ms, as a number of ticks. Positions come only once in each period (period_ms)");
+      source.fail("missing_ticks must be at least " + std::to_string(kPeriodsWithout) +
+                  " periods (period_ms), because positions arrive only once in each period: here " +
+                  std::to_string(kPeriodsWithout * settings.period.count / 1000) + " ms, in ticks");
     settings.axes.push_back({address, position_scale(source, axes[k].rotary)});
   }
   if (settings.count() > ModbusAxesSettings::kMostRegisters)

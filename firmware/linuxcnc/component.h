@@ -32,7 +32,8 @@ class Component {
   ~Component();
   Component(const Component&) = delete;
   Component& operator=(const Component&) = delete;
-  /// Starts the two threads. Returns false if the operating system refuses them. Not real-time safe.
+  /// Starts the two threads. Returns false if the operating system refuses the threads. Not
+  /// real-time safe.
   bool start() noexcept;
   /// Ends the two threads. After stop(), ticks may still run, and the shared memory (hatch) is not used any
   /// more. Not real-time safe.

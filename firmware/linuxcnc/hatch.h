@@ -29,8 +29,8 @@ bool wait_for_call(Call& call, TimeUs wait) noexcept;
 inline bool is_asked(const Call& call) noexcept {
   return (call.turn.load(std::memory_order_acquire) & 1) != 0;
 }
-/// Marks a request as answered. Before this call, the caller has already written the result, the size and the
-/// bytes of the answer into the call. Not real-time safe.
+/// Marks a request as answered. Before answer_call(), the server must write the result, the size
+/// and the bytes of the answer into `call`. Not real-time safe.
 void answer_call(Call& call) noexcept;
 /// Makes a request and waits until it is answered. Returns false and withdraws the request if the process
 /// `peer` has ended or `stop` is set. Not real-time safe.

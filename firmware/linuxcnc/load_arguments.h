@@ -20,8 +20,9 @@ struct LoadedWiring {
   double mm_per_unit = 1;
 };
 
-/// Checks all arguments before any object is constructed. Returns false if an argument is wrong. `why` is
-/// then one line with the name of the argument and its error. Not real-time safe.
+/// Checks all arguments before any object is constructed. Returns false if an argument is wrong.
+/// After a wrong argument, `why` is one line with the name of the argument and its error. Not
+/// real-time safe.
 bool read_load_arguments(const LoadArguments& arguments, LoadedWiring& loaded, std::span<char> why);
 
 }  // namespace vernier

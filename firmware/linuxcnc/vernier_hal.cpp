@@ -106,8 +106,8 @@ bool introduce(Hatch& hatch, const Introduction& introduction) {
       return true;
     case Attached::kEmpty:
       std::fputs(
-          "vernier-hal: the store has no image: nothing is corrected until one is uploaded or given with "
-          "--image\n",
+          "vernier-hal: the store has no image: the component corrects nothing until an image is uploaded or "
+          "given with --image\n",
           stderr);
       return true;
     case Attached::kResumed:

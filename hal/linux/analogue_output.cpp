@@ -38,7 +38,8 @@ struct PwmChannel {
 std::unique_ptr<AnalogueOutput> AnalogueOutput::pwm(const std::string& channel, std::int64_t period_ns,
                                                     const AnalogueScale& scale, std::string& error) {
   if (channel.empty() || !scale.valid() || scale.high > period_ns) {
-    error = channel.empty() ? "the path of the PWM channel is empty" : channel + ": the range does not fit";
+    error = channel.empty() ? "the path of the PWM channel is empty"
+                            : channel + ": the codes low, high and zero do not fit the period of the PWM";
     return nullptr;
   }
   PwmChannel pwm(channel, error);
@@ -53,7 +54,8 @@ std::unique_ptr<AnalogueOutput> AnalogueOutput::pwm(const std::string& channel, 
 std::unique_ptr<AnalogueOutput> AnalogueOutput::iio_dac(const std::string& device, unsigned channel,
                                                         const AnalogueScale& scale, std::string& error) {
   if (device.empty() || !scale.valid()) {
-    error = device.empty() ? "the path of the IIO device is empty" : device + ": the range does not fit";
+    error = device.empty() ? "the path of the IIO device is empty"
+                           : device + ": the settings low, high, zero, codes and span are inconsistent";
     return nullptr;
   }
   const std::string path = device + "/out_voltage" + std::to_string(channel) + "_raw";

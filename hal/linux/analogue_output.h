@@ -24,9 +24,10 @@ class AnalogueOutput : public OutputDevice {
   static std::unique_ptr<AnalogueOutput> iio_dac(const std::string& device, unsigned channel,
                                                  const AnalogueScale& scale, std::string& error);
 
-  /// A correction beyond the range is limited to the end of the range, and the write is counted. The function
-  /// write_correction() returns kRefused if the driver refused the value. Real-time safe if the bus of the
-  /// device is fast: a write to an SPI converter takes some ten microseconds.
+  /// A correction beyond the range of the output is limited to the end of the range, and such a
+  /// write is counted. The function write_correction() returns kRefused if the driver refused the
+  /// value. Real-time safe if the bus of the device is fast: a write to an SPI converter takes some
+  /// ten microseconds.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
 
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
@@ -38,8 +39,9 @@ class AnalogueOutput : public OutputDevice {
   std::uint64_t held_at_end(std::uint32_t) const noexcept override { return held_at_end_; }
   const AnalogueScale& scale(std::uint32_t) const noexcept override { return converter_.scale(); }
 
-  /// Reads the code of the device and writes the same code again, so that the axis does not move. If the
-  /// driver does not give the code, the result is kNoReading and nothing is written. Not real-time safe.
+  /// Reads the code of the device and writes the same code again, so that the axis does not move.
+  /// If the driver does not give the present code of the device, the result is kNoReading and no
+  /// code is written. Not real-time safe.
   HalFault rewrite() noexcept;
 
  private:

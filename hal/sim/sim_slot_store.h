@@ -9,8 +9,9 @@
 namespace vernier {
 
 /// A slot store in memory for tests. The power of this store can fail at any byte of any write. After the
-/// simulated power failure, the bytes written before it are new and the other bytes are old. No further byte
-/// is written until restore_power(). A SimSlotStore can also be full, or fail to write.
+/// simulated power failure, the bytes written before it are new and the other bytes are old. After
+/// the simulated power failure, no byte is written until restore_power() is called. A SimSlotStore
+/// can also be full, or fail to write.
 class SimSlotStore : public SlotStore {
  public:
   explicit SimSlotStore(std::uint32_t capacity) : capacity_(capacity) {}

@@ -9,8 +9,8 @@ namespace vernier {
 
 /// Computes round(value * numerator / denominator) with halves away from zero. The rounded ratio is exact and
 /// needs no division. The ratio numerator / denominator is computed once, in the constructor. The product of
-/// a value and the ratio is the exact quotient or one less. The remainder determines which of both is
-/// correct.
+/// a value and the ratio is the exact quotient or one less. The remainder determines whether the
+/// product or the product plus one is the exact quotient.
 class RoundedRatio {
  public:
   static constexpr std::int64_t kMost = std::int64_t{1} << 50;
@@ -42,7 +42,8 @@ class RoundedRatio {
     else if (product.high >> shift_ == 0)
       quotient = shift_ == 0 ? product.low : product.high << (64 - shift_) | product.low >> shift_;
     if (quotient < kMost) {
-      // The difference is less than twice the denominator, so the overflow of 64 bits has no effect.
+      // The remainder is less than twice the denominator, so an overflow of its 64-bit computation
+      // has no effect.
       std::uint64_t rest = size * numerator_ - quotient * denominator_;
       if (rest >= denominator_) {
         ++quotient;

@@ -662,7 +662,7 @@ TEST(CanopenPdos, AreComparedWithThoseOfTheDrive) {
   std::uint32_t value = 0;
   EXPECT_EQ(sdo.read({}, value), "");
   EXPECT_EQ(static_cast<std::int32_t>(value), -77);
-  EXPECT_EQ(sdo.check_offset(0x502, {}), "no active RPDO of the drive has the identifier 0x502");
+  EXPECT_EQ(sdo.check_offset(0x502, {}), "the drive has no active RPDO with the identifier 0x502");
   EXPECT_EQ(sdo.check_offset(0x501, {0x2010, 3}),
             "RPDO 0x1603: object 0x60B00020 is mapped, but the required object is 0x20100320");
   drive.set(0x1403, 2, 255);
@@ -697,11 +697,12 @@ TEST(CanopenPdos, OfTwentyNineBitsOrRareOrWrittenTwiceAreRefused) {
   EXPECT_EQ(sdo.check_offset(rpdo, {}), "");
   drive.set(0x1600, 2, 0x60b00020);
   EXPECT_EQ(sdo.check_offset(rpdo, {}),
-            "RPDO 0x1600: object 0x60B00020 is mapped there too; only the RPDO of the board may write it");
+            "RPDO 0x1600: object 0x60B00020 is also mapped in this PDO; only the PDO of the board may "
+            "contain this object");
   drive.set(0x1400, 1, 0x80000201);
   EXPECT_EQ(sdo.check_offset(rpdo, {}), "") << "that one is off";
   drive.set(0x1404, 1, rpdo);
-  EXPECT_EQ(sdo.check_offset(rpdo, {}), "two active RPDOs of the drive have the identifier 0x501");
+  EXPECT_EQ(sdo.check_offset(rpdo, {}), "the drive has two active RPDOs with the identifier 0x501");
 }
 
 }  // namespace

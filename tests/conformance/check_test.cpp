@@ -154,8 +154,9 @@ TEST_F(Check, NamesACalibrationThatIsNotThere) {
   const Said said = run("--check");
   EXPECT_EQ(said.status, 2) << said.text;
   EXPECT_NE(
-      said.text.find("missing  axis.X.output  calibration " + files_.path() +
-                     "/typo.toml: the calibration file does not exist; vernierd --calibrate X makes it\n"),
+      said.text.find(
+          "missing  axis.X.output  calibration " + files_.path() +
+          "/typo.toml: the calibration file does not exist; make this file with vernierd --calibrate X\n"),
       std::string::npos)
       << said.text;
   EXPECT_NE(said.text.find("1 file: 1 missing\n"), std::string::npos) << said.text;
@@ -429,7 +430,8 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
       {board_of(sim, output + "object = \"0x60B0:1g\"", sync), "'0x60B0:1g' is no object"},
       {board_of(sim, output + "pdo_test = \"no\"", sync), "pdo_test: 'no' is neither sdo nor none"},
       {board_of(sim, output + "rpdo = 0x81", sync),
-       "the emergency message and rpdo have the same identifier; each must have its own"},
+       "the emergency message and rpdo: two CAN frames have the same identifier; each frame must have its "
+       "own"},
       {board_of(sim, output + "rpdo = 0x201", sync),
        "board.toml:18: output of X: rpdo: 0x201 belongs to RPDO 1, the controller's controlword (0x201 to "
        "0x27F)"},
@@ -445,12 +447,12 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
       {board_of(sim, output + "object = \"0x60B0:01\"", sync), "'0x60B0:01' is no position offset"},
       {board_of(sim, output + "rpdo = 0x000", sync), "rpdo must be a whole number from 1 to 2047"},
       {board_of(sim, output + "rpdo = 0x080", sync),
-       "sync and rpdo have the same identifier; each must have its own"},
+       "sync and rpdo: two CAN frames have the same identifier; each frame must have its own"},
       {board_of(sim, output + "rpdo = 0x701", sync),
-       "the heartbeat and rpdo have the same identifier; each must have its own"},
+       "the heartbeat and rpdo: two CAN frames have the same identifier; each frame must have its own"},
       {board_of(sim, output + "rpdo = 0x702", sync), "rpdo: 0x702 belongs to heartbeats"},
       {board_of(sim, output + "tpdo = 0x501", sync),
-       "tpdo and rpdo have the same identifier; each must have its own"},
+       "tpdo and rpdo: two CAN frames have the same identifier; each frame must have its own"},
       {board_of(sim, output + "tpdo = 0x082", sync),
        "board.toml:18: output of X: tpdo: 0x082 belongs to emergency messages"},
       {board_of(replaced(drive, "scale", "tpdo = 0x100\nscale"), output, sync),
@@ -461,25 +463,25 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
            "0.001\n"
            "[[output]]\naxis = \"Y\"\n" +
            replaced(output, "node = 1", "node = 2\nrpdo = 0x6C0"),
-       "output of Y: rpdo: the identifier is that of "},
+       "output of Y: rpdo: this identifier is already used by the RPDO of "},
       {board_of("kind = \"can\"\ninterface = \"nocan\"\nid = 0x501", output, sync),
-       "board.toml:12: axis X: id: a frame of the drive of "},
+       "board.toml:12: axis X: id: this identifier is already used by a frame of the drive of "},
       {board_of(replaced(drive, "scale", "tpdo = 0x501\nscale"), output, sync),
-       "tpdo: a frame of the drive of "},
+       "tpdo: this identifier is already used by a frame of the drive of "},
       {board_of(drive, replaced(output, "node = 1", "node = 2"), sync),
        "output of X: node: the position of this axis is from another drive ("},
       {board_of(drive, replaced(output, "scale = 0.1", "scale = 1"), sync),
        "output of X: scale: the position of this drive has a count of another size"},
       {board_of(replaced(drive, "scale = 0.1", "scale = -0.1"), output, sync),
-       "output of X: polarity: the position counts against the axis"},
+       "output of X: polarity must be inverted, because the scale of the position is below 0 in "},
       {board_of(drive, output + "polarity = \"inverted\"", sync),
-       "output of X: polarity: the position counts with the axis"},
+       "output of X: polarity must be normal, because the scale of the position is above 0 in "},
       {board_of(sim, output + "rpdo = 0x302", sync),
        "rpdo: the identifier belongs to RPDO 2 of the drives, node 2"},
       {board_of(sim, output + "rpdo = 0x502", sync),
        "rpdo: the identifier belongs to RPDO 4 of the drives, node 2"},
       {board_of(sim, output + "pdo_test = \"none\"\nrpdo = 0x401", sync),
-       "rpdo: RPDO 3 of the drives have a controlword by default, and with pdo_test = \"none\""},
+       "rpdo: with pdo_test = \"none\" the board does not read the mapping of this RPDO"},
       {board_of(sim, output + "rpdo = 0x100", sync), "rpdo: 0x100 belongs to TIME"},
       {board_of(sim, output + "sync = 0x201", sync), "sync: 0x201 belongs to RPDO 1"},
       {with_link("0x650", "0"), "link: receive: 0x650 belongs to SDO requests"},
@@ -499,7 +501,8 @@ TEST_F(Check, WrongSettingsOfDrivesAndCountersAreNamed) {
                 "resolution = 1e-5\nrange = 0.1\nperiod_ms = 20\ntimeout_ms = 400\n"),
        "timeout_ms: a request and its answer need 230 ms on this line, and must end within a quarter "
        "of timeout_ms"},
-      {with_link("0x700", "0x501"), "link: transmit: a frame of the drive of "},
+      {with_link("0x700", "0x501"),
+       "link: transmit: this identifier is already used by a frame of the drive of "},
       {board_of(sim, output + "span = 1", sync),
        "board.toml:18: output of X: unknown setting span of kind canopen"},
       {board_of(sim, replaced(output, "scale = 0.1", "scale = -1"), sync), "scale must be above 0"},
@@ -909,8 +912,10 @@ TEST_F(Check, RegistersOfAControllerHaveOneUse) {
       {plc + "register = 200, echo = 50", "", "echo: register 50 at 127.0.0.1:502 unit 1 overlaps the echo"},
       {plc + "register = 200, echo = 102", "", "overlaps the block"},
       {plc + "register = 48, echo = 60", "", "overlaps the block (registers 48 to 51)"},
-      {plc + "register = 100, place = 1, echo = 51", "", "echo differs from "},
-      {plc + "register = 100, place = 1, echo = 50, timeout_ms = 200", "", "timeout_ms differs from "},
+      {plc + "register = 100, place = 1, echo = 51", "",
+       "echo: all axes of one register block need the same value"},
+      {plc + "register = 100, place = 1, echo = 50, timeout_ms = 200", "",
+       "timeout_ms: all axes of one register block need the same value"},
       {plc + "register = 200, echo = 60", input + "register = 103 }\n", "reading: register 103"},
       {plc + "register = 200, echo = 60", input + "register = 99, type = \"int32\" }\n",
        "reading: registers 99 to 100"},
@@ -1067,7 +1072,7 @@ TEST_F(Check, OneDeviceHasOneUse) {
   write(replaced(kBoard, "output = { kind = \"pwm\", path = \"ROOT/pwm0\", period_ns = 50000, ", y));
   Said said = run("--check");
   EXPECT_EQ(said.status, 1) << said.text;
-  EXPECT_NE(said.text.find("axis.Y.output: the device of "), std::string::npos) << said.text;
+  EXPECT_NE(said.text.find("axis.Y.output: this device is already used by "), std::string::npos) << said.text;
   // Under another name it is found when it is opened.
   write(replaced(replaced(kBoard, "output = { kind = \"pwm\", path = \"ROOT/pwm0\", period_ns = 50000, ", y),
                  "\"mcp4922\", channel = 1, codes = 255, span",

@@ -242,7 +242,7 @@ class Judge {
     double chance = rest_p_;
     if (const Remainder one = beside_one_change(checks_.size() - 1); one.freedom > 0)
       chance = std::min(chance, 2 * maths::chi_square_tail(one.square, one.freedom));
-    answer_.noise_p = text::decisive(chance, "the chance of the readings' scatter");
+    answer_.noise_p = text::decisive(chance, "the probability of the scatter of the readings");
   }
 
   /// Numbers beyond the set-up of all checks. With fewer than three, any of them may belong to any tested
@@ -302,8 +302,8 @@ class Judge {
     answer_.explanation = fmt::format("No evidence for a change ({:.3g}, alarm threshold {:g}).",
                                       answer_.evidence, answer_.alarm);
     if (!answer_.not_seen.empty())
-      answer_.explanation +=
-          fmt::format(" {}. A change of these quantities is not covered.", not_seen_words());
+      answer_.explanation += fmt::format(
+          " {}. The check cannot report a change of the quantities in this list.", not_seen_words());
   }
 
   /// Parameters on which the readings give no evidence, the first of a long list.
@@ -330,7 +330,7 @@ class Judge {
         "The readings scatter by {:.2g} times their stated uncertainty, {} (probability that noise alone "
         "causes this scatter: {:.1g}).",
         std::sqrt(beside_all ? last_.rest / last_.freedom : scatter_.back()),
-        beside_all ? "whatever may have changed in the machine"
+        beside_all ? "also after a fit of all tested parameters"
                    : "and no change of a single parameter explains this scatter",
         answer_.noise_p);
   }

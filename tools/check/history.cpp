@@ -74,7 +74,7 @@ std::string history_text(const CheckHistory& history) {
 CheckHistory parse_history(const std::string& text, const std::string& file) {
   try {
     if (text::nests_deeper_than(text, text::kMostJsonDepth))
-      throw std::invalid_argument("the JSON of the file nests too deeply");
+      throw std::invalid_argument("the JSON of the history file is nested too deeply");
     const Json json = Json::parse(text);
     if (json.at("format") != "vernier-checks")
       throw std::invalid_argument("the key format is not vernier-checks");

@@ -77,7 +77,8 @@ void register_again(CLI::App& vernier) {
                    "report (HTML), machine file (XML), result (JSON), or the folder of improve or compile")
       ->type_name(kReads)
       ->required();
-  command->add_option("--json", arguments->json, "result for programs (- is standard output)");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "FILE contains a record: the command that made the file, its folder, and the SHA-256 of each\n"
       "input file. `vernier again` runs this command in a temporary folder with copies of the inputs,\n"

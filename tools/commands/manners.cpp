@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/commands/manners.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -90,9 +92,9 @@ void require_known_commands(const CLI::App& vernier, const std::vector<std::stri
     if (next == nullptr) {
       const auto meant = text::word_meant(word, names_of_commands(*app));
       const std::string group = app == &vernier ? "" : " " + app->get_name();
-      throw text::InputError(
-          "\"" + word + "\" is not a command of vernier" + group +
-          (meant ? "; did you mean vernier" + group + " " + *meant + "?" : "; vernier help lists them"));
+      throw text::InputError(fmt::format(
+          "\"{}\" is not a command of vernier{}{}", word, group,
+          meant ? "; did you mean vernier" + group + " " + *meant + "?" : "; vernier help lists them"));
     }
     app = next;
   }
@@ -108,7 +110,7 @@ std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error) 
     for (const CLI::Option* option : command->get_options())
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   const auto meant = text::word_meant(word, names);
-  return meant ? "\"" + word + "\": no option of this command; did you mean " + *meant + "?" : "";
+  return meant ? fmt::format("\"{}\": no option of this command; did you mean {}?", word, *meant) : "";
 }
 
 void require_known_dashes(const CLI::App& vernier, const std::vector<std::string>& arguments) {
@@ -151,7 +153,8 @@ void take_plain_numbers(CLI::App& vernier) {
       "");
   const CLI::Validator count(
       [](const std::string& word) {
-        return text::parse_count(word) ? std::string() : "\"" + word + "\" is no count (0, 1, 2, ...)";
+        return text::parse_count(word) ? std::string()
+                                       : fmt::format("\"{}\" is no count (0, 1, 2, ...)", word);
       },
       "");
   for (CLI::Option* option : vernier.get_options()) {
@@ -216,7 +219,8 @@ std::string import_hint(const std::string& message, const std::vector<std::strin
     const std::string bytes = head_of(path, kMostRead);
     if (bytes.empty() || is_xml(sheet::utf8_text(bytes))) continue;
     const std::string command = lint::import_command_for(bytes, path);
-    if (!command.empty()) return path + " is not a measurement file; this command reads it: " + command;
+    if (!command.empty())
+      return fmt::format("{} is not a measurement file; this command reads it: {}", path, command);
   }
   return "";
 }

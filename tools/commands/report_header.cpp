@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/commands/report_header.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <string_view>
@@ -78,7 +80,7 @@ Entries ReportHeader::entries() const {
   }
   for (const std::string& words : given)
     if (!take(entries, words))
-      throw text::InputError("--header " + words + ": of the form \"serial number=4711\"");
+      throw text::InputError(fmt::format("--header {}: of the form \"serial number=4711\"", words));
   return entries;
 }
 

@@ -117,10 +117,14 @@ void register_workbench(CLI::App& vernier) {
   command->add_option("DIR", arguments->directory, "folder with machines, measurements, images")
       ->type_name(kReadsFolder)
       ->capture_default_str();
-  command->add_option("--port", arguments->port, "of 127.0.0.1 (0: any free one)")->capture_default_str();
+  command
+      ->add_option("--port", arguments->port,
+                   "TCP port of 127.0.0.1 on which the server listens (0: any free port)")
+      ->capture_default_str();
   command->add_flag("--no-browser", arguments->no_browser, "only print the address");
   command->add_flag("--reader", arguments->reader, "")->group("");  // started by the server to read files
-  command->add_option("--json", arguments->json, "{url, port} once it serves; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "output for programs, {url, port}, when the server is ready; - for standard output");
   command->footer(
       "The server runs until it is interrupted (Ctrl-C). The printed address contains the token of the "
       "session.\n"
@@ -144,7 +148,8 @@ void register_image_diff(CLI::App& vernier) {
                    "secret key of `vernier keys` (or VERNIER_KEY): a board with keys sends its correction "
                    "image only to the owner of a trusted key")
       ->type_name(kReads);
-  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "Exit status 0 done, 1 bad input or no board, 2 the board's store contains no confirmed image.");
   command->callback([arguments] { run_diff(*arguments); });

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/compile/builder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -201,8 +203,8 @@ ProgramBuilder::Id ProgramBuilder::append(const Instruction& step, std::vector<R
   ranges_.insert(ranges_.end(), ranges.begin(), ranges.end());
   p_.instructions.push_back(step);
   if (registers_.size() - kFirstResult + p_.constants.size() + p_.channels.size() > kMaxRegisters)
-    throw text::InputError("cannot be compiled: the equation needs more than " +
-                           std::to_string(kMaxRegisters) + " registers");
+    throw text::InputError(fmt::format("cannot be compiled: the equation needs more than {} registers",
+                                       std::to_string(kMaxRegisters)));
   return id;
 }
 
@@ -240,8 +242,8 @@ ProgramBuilder::Id ProgramBuilder::linear(double k, Id a, double l, Id b, const 
     const Id id = append(step, {meta}, overflow);
     if (!overflow) return id;
   }
-  throw text::InputError("cannot be compiled: " + name +
-                         " is too large for 32 bits over the declared ranges");
+  throw text::InputError(
+      fmt::format("cannot be compiled: over the declared ranges a value is too large for 32 bits: {}", name));
 }
 
 ProgramBuilder::Id ProgramBuilder::product(Id a, Id b, const Interval& exact, const std::string& name) {
@@ -267,8 +269,8 @@ ProgramBuilder::Id ProgramBuilder::product(Id a, Id b, const Interval& exact, co
     const Id id = append(step, {meta}, overflow);
     if (!overflow) return id;
   }
-  throw text::InputError("cannot be compiled: the product " + name +
-                         " does not fit 32 bits over the declared ranges");
+  throw text::InputError(fmt::format(
+      "cannot be compiled: over the declared ranges a product is too large for 32 bits: {}", name));
 }
 
 double ProgramBuilder::largest_value(const Product& p) const {
@@ -344,8 +346,8 @@ ProgramBuilder::Id ProgramBuilder::dot(double constant_part, std::vector<Product
     if (!overflow) return id;
     p_.terms.resize(first_term);
   }
-  throw text::InputError("cannot be compiled: " + name +
-                         " is too large for 32 bits over the declared ranges");
+  throw text::InputError(
+      fmt::format("cannot be compiled: over the declared ranges a value is too large for 32 bits: {}", name));
 }
 
 ProgramBuilder::Id ProgramBuilder::plain(Instruction step, int fraction_bits, const Interval& exact,
@@ -361,7 +363,8 @@ ProgramBuilder::Id ProgramBuilder::plain(Instruction step, int fraction_bits, co
   bool overflow = false;
   const Id id = append(step, {meta}, overflow);
   if (overflow)
-    throw text::InputError("cannot be compiled: " + name + " does not fit 32 bits over the declared ranges");
+    throw text::InputError(
+        fmt::format("cannot be compiled: {} does not fit 32 bits over the declared ranges", name));
   return id;
 }
 
@@ -369,8 +372,9 @@ ProgramBuilder::Id ProgramBuilder::reformat(Id a, int fraction_bits) {
   if (at(a).fraction_bits == fraction_bits) return a;
   const Factors f = factors_for(std::ldexp(1.0, fraction_bits - at(a).fraction_bits), 0);
   if (f.shift < 0 || f.first == 0)
-    throw text::InputError("cannot be compiled: " + at(a).name +
-                           " is compared with a value of another order of magnitude");
+    throw text::InputError(
+        fmt::format("cannot be compiled: a value is compared with a value of another order of magnitude: {}",
+                    at(a).name));
   const Instruction step{OpCode::kLinear,
                          static_cast<std::uint8_t>(f.shift),
                          static_cast<std::uint16_t>(a),
@@ -399,7 +403,9 @@ ProgramBuilder::Id ProgramBuilder::look_up(Id position, LoweredTable table, std:
   const std::string name = results[0].name;
   bool overflow = false;
   const Id id = append(step, std::move(results), overflow);
-  if (overflow) throw text::InputError("cannot be compiled: " + name + " rises too steeply for 32 bits");
+  if (overflow)
+    throw text::InputError(fmt::format(
+        "cannot be compiled: the slope of a table or function is too large for 32 bits: {}", name));
   return id;
 }
 
@@ -407,9 +413,9 @@ ProgramBuilder::Id ProgramBuilder::sine_cosine(Id angle, const Interval& sine, c
   const double per_count = std::ldexp(4294967296.0 / 360, -at(angle).fraction_bits);
   const int shift = std::min(30 - std::ilogb(per_count), static_cast<int>(kMaxShift));
   if (shift < 0)
-    throw text::InputError(
-        "cannot be compiled: an angle exceeds the largest number of turns of the fixed-point format: " +
-        at(angle).name);
+    throw text::InputError(fmt::format(
+        "cannot be compiled: an angle exceeds the largest number of turns of the fixed-point format: {}",
+        at(angle).name));
   const double multiplier = std::round(std::ldexp(per_count, shift));
   // If rounding reaches 2^31, one less is equally accurate.
   const auto k = static_cast<std::int32_t>(std::min(multiplier, 2147483647.0));

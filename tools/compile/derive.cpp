@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/compile/derive.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -112,7 +114,7 @@ class Attempt {
     } catch (const std::domain_error& reason) {
       throw text::InputError(
           {machine_.file, machine_.axes[axis].line}, machine_.axes[axis].name,
-          std::string("cannot be compiled: the nominal chain gives this axis ") + reason.what());
+          std::string("the motion of this axis in the nominal chain cannot be compiled: ") + reason.what());
     }
   }
 
@@ -173,13 +175,15 @@ Solution solved(const model::Machine& machine, Attempt& attempt) {
   result.solve = solve_axes(d);
   const Span span = span_of(d, d.columns);
   if (d.least_squares && d.least_squares->nearest)
-    d.notes.push_back("the axes " + names_of(machine, d) +
-                      " move the tool point in directions that depend on the pose: a deviation perpendicular "
-                      "to these directions is not corrected");
+    d.notes.push_back(
+        fmt::format("the directions in which the axes move the tool point depend on the pose, and a "
+                    "deviation perpendicular to these directions is not corrected; axes: {}",
+                    names_of(machine, d)));
   else if (span.rank < 3 && !holds(d.graph, span, d.deviation))
-    d.notes.push_back("the axes " + names_of(machine, d) +
-                      " do not move the tool point in every direction: a deviation perpendicular to their "
-                      "directions is not corrected");
+    d.notes.push_back(
+        fmt::format("the axes do not move the tool point in every direction, and a deviation perpendicular "
+                    "to their directions is not corrected; axes: {}",
+                    names_of(machine, d)));
   return result;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/compile/dual.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -255,7 +257,7 @@ Dual Translator::visit(const model::Expr& expr) {
   if (expr.op == model::Op::kNumber) return constant(expr.number, 0);
   if (expr.op == model::Op::kSymbol) return symbol(expr);
   if (expr.op == model::Op::kRunIs) {
-    note("run(\"" + expr.name + "\") is 0 in an image, because it refers to a run of a measurement");
+    note(fmt::format("run(\"{}\") is 0 in an image, because it refers to a run of a measurement", expr.name));
     return constant(0, 0);
   }
   const Dual a = visit(*expr.args[0]);

@@ -96,7 +96,7 @@ class DirectionChain {
     } catch (const std::domain_error& reason) {
       throw text::InputError(
           {machine_.file, machine_.axes[axis].line}, machine_.axes[axis].name,
-          std::string("cannot be compiled: the nominal chain gives this axis ") + reason.what());
+          std::string("the motion of this axis in the nominal chain cannot be compiled: ") + reason.what());
     }
   }
 
@@ -198,15 +198,16 @@ std::string list_of(const model::Machine& machine, const std::vector<std::size_t
 }
 
 void add_notes(const model::Machine& machine, Derivation& d, const Orientation& o) {
-  d.notes.push_back("the direction of the tool is corrected by " + list_of(machine, o.axes));
+  d.notes.push_back(
+      fmt::format("rotary axes that correct the direction of the tool: {}", list_of(machine, o.axes)));
   if (o.axes.size() == 1)
     d.notes.push_back(
         "only one rotary axis tilts the tool, so the image corrects only the tilt about the direction of "
         "this axis");
   if (o.damped)
     d.notes.push_back(
-        fmt::format("{} tilt the tool in the same direction in some poses: near these poses (about {:.1f} % "
-                    "of the declared ranges) the correction of the tool direction is damped",
+        fmt::format("the rotary axes {} tilt the tool in the same direction in some poses: near these poses "
+                    "(about {:.1f} % of the declared ranges) the correction of the tool direction is damped",
                     list_of(machine, o.axes), 100 * *o.damped));
   for (std::size_t k = 0; k < o.axes.size(); ++k) {
     const model::Axis& axis = machine.axes[o.axes[k]];
@@ -215,7 +216,9 @@ void add_notes(const model::Machine& machine, Derivation& d, const Orientation& 
           "axis {} has no maxcorrection: its correction of the tool direction may reach {:.3g} deg",
           axis.name, o.limit_deg[k]));
     if (!axis.max_slew)
-      d.notes.push_back("axis " + axis.name + " has no maxslew: the speed of its correction is not limited");
+      d.notes.push_back(fmt::format(
+          "a corrected rotary axis has no maxslew, so the speed of its correction is not limited: {}",
+          axis.name));
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/create/dh_table.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <optional>
 
@@ -91,9 +93,8 @@ DhRow parse_dh_row(const std::string& words) {
     parts.erase(parts.begin());
   }
   if (parts.size() != 4)
-    throw text::InputError(
-        "\"" + words +
-        "\": a joint is theta,d,a,alpha (deg,mm,mm,deg; P, before them for a prismatic joint)");
+    throw text::InputError(fmt::format(
+        "\"{}\": a joint is theta,d,a,alpha (deg,mm,mm,deg; P, before them for a prismatic joint)", words));
   row.theta = number_in(parts[0], place, "theta");
   row.d = number_in(parts[1], place, "d");
   row.a = number_in(parts[2], place, "a");

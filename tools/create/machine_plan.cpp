@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/create/machine_plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -46,11 +48,11 @@ double end_of(const std::string& text, const std::string& words) {
 
 void check_name(const std::string& name) {
   if (!text::is_name(name))
-    throw text::InputError("\"" + name +
-                           "\": a name is letters, digits and _, and begins with a letter or _");
+    throw text::InputError(
+        fmt::format("\"{}\": a name is letters, digits and _, and begins with a letter or _", name));
   if (model::is_reserved_word(name) || model::is_no_axis_name({}, name))
-    throw text::InputError("\"" + name +
-                           "\": the file formats reserve this name; use an axis name such as X, Y, B or J1");
+    throw text::InputError(fmt::format(
+        "\"{}\": the file formats reserve this name; use an axis name such as X, Y, B or J1", name));
 }
 
 void check_names(const std::vector<PlannedAxis>& axes) {
@@ -58,7 +60,7 @@ void check_names(const std::vector<PlannedAxis>& axes) {
   model::Machine machine;
   for (const PlannedAxis& axis : axes) {
     if (!seen.insert(axis.name).second)
-      throw text::InputError("\"" + axis.name + "\": this axis is given twice; give each axis once");
+      throw text::InputError(fmt::format("\"{}\": this axis is given twice; give each axis once", axis.name));
     machine.axes.emplace_back().name = axis.name;
   }
   for (const PlannedAxis& axis : axes)
@@ -73,10 +75,12 @@ const MachineType& type_of(const std::string& name) {
     known += (known.empty() ? "" : " ") + std::string(type.name);
   }
   if (name == "delta" || name == "hexapod" || name == "parallel")
-    throw text::InputError("\"" + name +
-                           "\": a machine file describes one open chain from the bed to the tool; a parallel "
-                           "machine has closed loops, which a machine file cannot describe");
-  throw text::InputError("\"" + name + "\": this type of machine is unknown; known types are " + known);
+    throw text::InputError(
+        fmt::format("\"{}\": a machine file describes one open chain from the bed to the tool; a parallel "
+                    "machine has closed loops, which a machine file cannot describe",
+                    name));
+  throw text::InputError(
+      fmt::format("\"{}\": this type of machine is unknown; known types are {}", name, known));
 }
 
 std::vector<std::size_t> by_names(const std::vector<PlannedAxis>& axes,
@@ -87,7 +91,7 @@ std::vector<std::size_t> by_names(const std::vector<PlannedAxis>& axes,
     const auto found =
         std::find_if(axes.begin(), axes.end(), [&](const auto& axis) { return axis.name == name; });
     if (found == axes.end())
-      throw text::InputError("\"" + name + "\": no option --axis declares an axis of this name");
+      throw text::InputError(fmt::format("\"{}\": no option --axis declares an axis of this name", name));
     side.push_back(static_cast<std::size_t>(found - axes.begin()));
   }
   return side;
@@ -122,12 +126,12 @@ void place_all(MachinePlan& plan, bool tool_given, bool work_given) {
   for (std::size_t i = 0; i < plan.axes.size(); ++i) {
     const bool tool = holds(plan.tool_side, i), work = holds(plan.work_side, i);
     if (tool && work)
-      throw text::InputError("\"" + plan.axes[i].name +
-                             "\": this axis is both on the tool side and on the workpiece side");
+      throw text::InputError(fmt::format(
+          "\"{}\": this axis is both on the tool side and on the workpiece side", plan.axes[i].name));
     if (tool || work) continue;
     if (tool_given && work_given)
-      throw text::InputError("\"" + plan.axes[i].name +
-                             "\": neither --tool-side nor --work-side has this axis");
+      throw text::InputError(
+          fmt::format("\"{}\": neither --tool-side nor --work-side has this axis", plan.axes[i].name));
     // Axes that are not assigned to one side belong to the other. A rotary axis that a type does not know is
     // a table.
     (work_given ? plan.tool_side : plan.work_side).push_back(i);
@@ -135,8 +139,8 @@ void place_all(MachinePlan& plan, bool tool_given, bool work_given) {
   for (const auto* side : {&plan.tool_side, &plan.work_side})
     for (std::size_t k = 0; k < side->size(); ++k)
       if (std::count(side->begin(), side->end(), (*side)[k]) > 1)
-        throw text::InputError("\"" + plan.axes[(*side)[k]].name +
-                               "\": this axis is given twice on the same side");
+        throw text::InputError(
+            fmt::format("\"{}\": this axis is given twice on the same side", plan.axes[(*side)[k]].name));
 }
 
 }  // namespace
@@ -187,14 +191,15 @@ const std::vector<MachineType>& machine_types() {
 PlannedAxis parse_planned_axis(const std::string& words) {
   const std::vector<std::string> parts = text::parts_of(words, ':');
   if (parts.size() < 3 || parts[0].empty())
-    throw text::InputError("--axis " + words +
-                           ": an axis is NAME:MIN:MAX, in mm or deg, such as X:0:600 or B:-90:90");
+    throw text::InputError(
+        fmt::format("--axis {}: an axis is NAME:MIN:MAX, in mm or deg, such as X:0:600 or B:-90:90", words));
   PlannedAxis axis;
   axis.name = parts[0];
   check_name(axis.name);
   axis.min = end_of(parts[1], words);
   axis.max = end_of(parts[2], words);
-  if (axis.min >= axis.max) throw text::InputError("--axis " + words + ": MAX must be greater than MIN");
+  if (axis.min >= axis.max)
+    throw text::InputError(fmt::format("--axis {}: MAX must be greater than MIN", words));
   axis.direction = direction_in(axis.name);
   for (std::size_t i = 3; i < parts.size(); ++i) {
     if (parts[i] == "wrap")
@@ -203,14 +208,15 @@ PlannedAxis parse_planned_axis(const std::string& words) {
       axis.direction = parts[i].front();
     else
       throw text::InputError(
-          "--axis " + words + ": \"" + parts[i] +
-          "\": must be X, Y, Z (motion along X, Y, Z), A, B, C (rotation about X, Y, Z), or the word wrap "
-          "(a rotary axis of one turn)");
+          fmt::format("--axis {}: \"{}\": must be X, Y, Z (motion along X, Y, Z), A, B, C (rotation about X, "
+                      "Y, Z), or the word wrap (a rotary axis of one turn)",
+                      words, parts[i]));
   }
   if (axis.rollover && !axis.rotary())
-    throw text::InputError("--axis " + words + ": only a rotary axis can wrap");
+    throw text::InputError(fmt::format("--axis {}: only a rotary axis can wrap", words));
   if (axis.rollover && std::abs(axis.max - axis.min - 360) > 1e-9)
-    throw text::InputError("--axis " + words + ": an axis that wraps has a range of one turn, 360 deg");
+    throw text::InputError(
+        fmt::format("--axis {}: an axis that wraps has a range of one turn, 360 deg", words));
   return axis;
 }
 
@@ -224,9 +230,10 @@ MachinePlan plan_machine(const std::string& type_name, std::vector<PlannedAxis> 
   check_names(axes);
   for (const PlannedAxis& axis : axes)
     if (axis.direction == kNoDirection)
-      throw text::InputError("\"" + axis.name +
-                             "\": the direction of this axis is missing; add it, for example " + axis.name +
-                             ":MIN:MAX:X (X Y Z along it, A B C about X Y Z)");
+      throw text::InputError(
+          fmt::format("\"{}\": the direction of this axis is missing; add it, for example {}:MIN:MAX:X (X Y "
+                      "Z along it, A B C about X Y Z)",
+                      axis.name, axis.name));
   MachinePlan plan;
   plan.type = plan.name = type.name;
   plan.axes = std::move(axes);
@@ -251,9 +258,9 @@ MachinePlan plan_robot(std::vector<PlannedAxis> axes, const std::vector<DhRow>& 
   check_names(axes);
   if (axes.size() != rows.size())
     throw text::InputError(
-        std::to_string(axes.size()) + " axes, but " + std::to_string(rows.size()) +
-        " rows of the arm: give a row of Denavit and Hartenberg for each joint (--dh FILE, or --joint "
-        "theta,d,a,alpha for each)");
+        fmt::format("{} axes, but {} rows of the arm: give a row of Denavit and Hartenberg for each joint "
+                    "(--dh FILE, or --joint theta,d,a,alpha for each)",
+                    axes.size(), rows.size()));
   MachinePlan plan;
   plan.type = plan.name = "robot";
   plan.arm = rows;

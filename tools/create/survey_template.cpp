@@ -169,8 +169,9 @@ std::string survey_template(const model::Machine& machine, const format::SurveyR
   for (const format::ReadingForm form : reading.list())
     if (form == format::ReadingForm::kInclination && !machine.workpiece.empty())
       throw text::InputError(
-          std::string("--reading ") + reading.word +
-          ": an inclination can be read only on the tool of a machine whose workpiece does not move");
+          fmt::format("--reading {}: an inclination can be read only on the tool of a machine whose "
+                      "workpiece does not move",
+                      reading.word));
   const std::string header = header_of(reading);
   std::string text = remarks(machine, reading);
   for (const AxisQuantity quantity : {AxisQuantity::kPosition, AxisQuantity::kSense})

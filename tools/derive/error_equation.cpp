@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/derive/error_equation.h"
 
+#include <fmt/format.h>
+
 #include <optional>
 #include <utility>
 
@@ -81,7 +83,7 @@ ex nominal_slope(const model::Machine& machine, const ElementaryMotion& motion,
     slope = motion.value.diff(parameter.symbol).subs(no_errors, GiNaC::subs_options::no_pattern);
   } catch (const std::exception&) {
     throw text::InputError({machine.file, transform.line}, transform.text[motion.dof],
-                           "the equation has no first order in " + parameter.name);
+                           fmt::format("the error equation has no first-order term in {}", parameter.name));
   }
   const std::string word = book.rough_word(slope);
   if (!word.empty())

@@ -87,12 +87,12 @@ std::string print_component(const ErrorEquation& equation, std::size_t component
 
 std::string print_text(const DerivedMachine& derived) {
   const ErrorEquation& e = derived.equation;
-  std::string text =
-      "Error equation of " + (e.machine.name.empty() ? "the machine" : e.machine.name) +
-      ", to first order\nActual minus nominal in workpiece coordinates; lengths in mm, angles and "
-      "rotary positions in rad.\n\nNominal tool point (X, Y, Z):\n    " +
-      vector_text(e.position, Notation::kText) + "\nNominal tool axis (i, j, k):\n    " +
-      vector_text(e.tool_axis, Notation::kText) + "\n\nDeviation of the tool point:\n";
+  std::string text = fmt::format(
+      "Error equation of {}, to first order\nActual minus nominal in workpiece coordinates; lengths in mm, "
+      "angles and rotary positions in rad.\n\nNominal tool point (X, Y, Z):\n    {}\nNominal tool axis (i, "
+      "j, k):\n    {}\n\nDeviation of the tool point:\n",
+      e.machine.name.empty() ? "the machine" : e.machine.name, vector_text(e.position, Notation::kText),
+      vector_text(e.tool_axis, Notation::kText));
   for (std::size_t c = 0; c < 9; ++c) {
     if (c == 3) text += "\nRotation of the tool (rotation vector):\n";
     if (c == 6) text += "\nDeviation of the tool axis:\n";

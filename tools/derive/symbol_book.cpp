@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/derive/symbol_book.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -111,12 +113,16 @@ ex SymbolBook::static_value(std::size_t index) {
   const bool error = s.nominal.has_value() || !s.hidden;
   ex at_nominal = exact_number(at);
   if (turning_.contains(index)) {
-    if (at != 0) notes.push_back(s.name + " turns a frame: its nominal angle is put in as a number");
+    if (at != 0)
+      notes.push_back(fmt::format(
+          "this static rotates a frame, so the equation contains its nominal angle as a number: {}", s.name));
   } else if (!error || at != 0) {
     at_nominal = nominal_symbol(key, s.name, s.unit, 1);
   }
   if (!error) return at_nominal;
-  if (!s.nominal) notes.push_back(s.name + " has no nominal: its value is taken for it");
+  if (!s.nominal)
+    notes.push_back(
+        fmt::format("this static has no nominal, so the equation uses its value as the nominal: {}", s.name));
   const bool plain = at == 0;
   return at_nominal + error_symbol(key, plain ? s.name : "d_" + s.name, s.name, s.unit, 1);
 }

@@ -3,6 +3,8 @@
 #include "tools/derive/symbol_book.h"
 #include "tools/derive/tidy.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -27,7 +29,7 @@ std::string text_of(const ex& expr) {
 }
 
 compile::Interval reciprocal(const compile::Interval& a, const ex& expr) {
-  if (a.low <= 0 && a.high >= 0) throw NoRange(text_of(expr) + " may be zero below a fraction line");
+  if (a.low <= 0 && a.high >= 0) throw NoRange("a divisor may be zero: " + text_of(expr));
   return widened({1 / a.high, 1 / a.low});
 }
 
@@ -43,10 +45,10 @@ compile::Interval power_range(const ex& e, const Ranges& ranges) {
     const int n = GiNaC::ex_to<GiNaC::numeric>(e.op(1)).to_int();
     return n >= 0 ? integer_power(base, n) : reciprocal(integer_power(base, -n), e.op(0));
   }
-  if (base.low < 0) throw NoRange(text_of(e.op(0)) + " may be negative below a root or a real power");
+  if (base.low < 0)
+    throw NoRange(fmt::format("the operand of a root or a real power may be negative: {}", text_of(e.op(0))));
   const compile::Interval exponent = range_of(e.op(1), ranges);
-  if (base.low == 0 && exponent.low < 0)
-    throw NoRange(text_of(e.op(0)) + " may be zero below a fraction line");
+  if (base.low == 0 && exponent.low < 0) throw NoRange("a divisor may be zero: " + text_of(e.op(0)));
   // Monotonic in each of the two separately, so the extremes are at corners.
   const auto [low, high] =
       std::minmax({std::pow(base.low, exponent.low), std::pow(base.low, exponent.high),

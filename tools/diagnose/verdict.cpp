@@ -110,7 +110,16 @@ class Decision {
   }
 
   std::string nothing_to_add() {
-    return with_refused(is_alone_in_noise() ? "The residual is noise: there is nothing to add." : "");
+    if (!is_alone_in_noise()) return {};
+    // Without u and without repeats nothing states the noise: a residual of any size can be without
+    // structure.
+    const bool known = fit::has_uncertainty(found_.measurement) || fit::noise_um(found_.measurement) ||
+                       fit::noise_urad(found_.measurement);
+    return with_refused(known
+                            ? "The residual is noise: there is nothing to add."
+                            : "The residual has no structure that a candidate explains: there is nothing to "
+                              "add. The readings have no u and no repeats, so the diagnosis cannot tell "
+                              "whether a residual of this size is the noise of the instrument.");
   }
 
   std::string nothing_explains() {

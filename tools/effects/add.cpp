@@ -28,7 +28,8 @@ class Adder {
     document_.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);
     find(document_);
     if (variables_.empty())
-      throw text::InputError(machine_.file + ": the machine file has no <variables> element; add one");
+      throw text::InputError(
+          fmt::format("{}: the machine file has no <variables> element; add one", machine_.file));
     insert_variables();
     for (const CandidateTerm& term : candidate_.terms)
       if (is_stand_in(machine_, term.place))

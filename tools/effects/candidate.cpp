@@ -67,7 +67,7 @@ class Maker {
     settle_reference();
     result_.choice = choice_;
     const std::vector<TermAt> terms = terms_to_fill();
-    if (terms.empty()) missing("a degree of freedom at which it acts");
+    if (terms.empty()) missing("a degree of freedom at which the effect acts");
     name_unknowns(terms);
     for (const TermAt& term : terms) {
       const model::ExprPtr filled = fill(term);
@@ -130,7 +130,7 @@ class Maker {
       for (std::size_t d = 0; d < at.dof_count(); ++d)
         if (text::equal_no_case(at.dof_name(d), name))
           place = DofPlace{choice_.place->workpiece, choice_.place->transform, d};
-      if (!place) missing("a degree of freedom of the transform named \"" + name + "\"");
+      if (!place) missing(fmt::format("a degree of freedom of the transform named \"{}\"", name));
       terms.push_back({*place, found_tree(part.substr(colon + 1)), choice_.axis});
     }
     return terms;
@@ -327,8 +327,9 @@ class Maker {
     const auto& inputs = choice_.inputs;
     if (model::resolve_name(machine_, name).kind == model::SymbolKind::kUnresolved &&
         std::find(inputs.begin(), inputs.end(), name) == inputs.end())
-      throw text::InputError(choice_.effect->id + ": \"" + name +
-                             "\": unknown name in its term (a logged column is named by input=NAME)");
+      throw text::InputError(
+          fmt::format("{}: \"{}\": unknown name in its term (a logged column is named by input=NAME)",
+                      choice_.effect->id, name));
   }
 
   bool is_free(const std::string& name) const {
@@ -383,8 +384,10 @@ class Maker {
     const std::string say = "; add start." + item.rule + "=VALUE";
     switch (item.kind) {
       case UnknownKind::kPeriod:
-        return "the period" + unit + " (pitch of the screw, period of the scale, a turn of a gear)" + say +
-               ", or let `vernier diagnose` find it";
+        return fmt::format(
+            "the period{} (pitch of the screw, period of the scale, a turn of a gear){}, or let `vernier "
+            "diagnose` find it",
+            unit, say);
       case UnknownKind::kTime:
         return "a time constant" + unit + say + " as a first guess";
       case UnknownKind::kTravel:

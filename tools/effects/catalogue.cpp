@@ -208,7 +208,7 @@ class CatalogueReader {
         fail(rule.name, "a grid is \"grid LOW HIGH COUNT\" with 0 < LOW < HIGH and COUNT 2 to 1000");
       rule.count = static_cast<std::size_t>(count);
     } else {
-      fail(kind, "expected linear, time, travel, period or grid");
+      fail(kind, "the kind of an unknown must be linear, time, travel, period or grid");
     }
     if (!rest.empty()) fail(rest, "this line has more words than the keyword allows");
     effect.unknowns.push_back(rule);

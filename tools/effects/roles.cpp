@@ -76,7 +76,8 @@ std::string with_declared_columns(const std::string& text, const model::Machine&
     return text::apply_edits(text, {at_end_of(text, inputs, lines)});
   const pugi::xml_node variables = element_named(document, "variables");
   if (!variables)
-    throw text::InputError(machine.file + ": the machine file has no <variables> element; add one");
+    throw text::InputError(
+        fmt::format("{}: the machine file has no <variables> element; add one", machine.file));
   return text::apply_edits(text, {at_end_of(text, variables, "    <inputs>\n" + lines + "    </inputs>\n")});
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/evaluate/budget.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
@@ -37,7 +39,7 @@ void add_to_budget(PositioningBudget& budget, const std::string& words) {
     }
   std::string names;
   for (const Entry& entry : kEntries) names += std::string(" ") + entry.name;
-  throw text::InputError("--budget " + words + ": of the form device=0.8, for one of" + names);
+  throw text::InputError(fmt::format("--budget {}: of the form device=0.8, for one of{}", words, names));
 }
 
 std::vector<BudgetPart> budget_parts(const PositioningBudget& budget, double length_mm) {

@@ -172,7 +172,8 @@ std::vector<DiagonalFile> read_diagonals(const std::string& text, const std::str
       if (columns.axis[k].size() == 0) continue;
       row.at[static_cast<Eigen::Index>(k)] = columns.axis[k][i];
       if (std::isnan(columns.axis[k][i]))
-        throw text::InputError({file, row.line}, std::string(1, "XYZ"[k]), "this column may not be empty");
+        throw text::InputError({file, row.line}, std::string(1, "XYZ"[k]),
+                               "the cells of this column must not be empty");
     }
     if (columns.u.size() > 0 && !std::isnan(columns.u[i])) u = std::max(u.value_or(0), columns.u[i]);
     rows.push_back(row);

@@ -63,10 +63,10 @@ text::Assurance assurance_of(const std::vector<JudgedValue>& all, const std::str
     const double expanded = one.expanded.value_or(0), reach = *one.value + expanded;
     const bool met = conformity(*one.value, one.tolerance, expanded) == Conformity::kMet;
     assurance.at_most(rule, met ? std::min(reach, one.tolerance) : reach, one.tolerance,
-                      fmt::format("{} with its expanded uncertainty, {}.", one.name, unit));
+                      fmt::format("The value of {} plus its expanded uncertainty, {}.", one.name, unit));
     if (!one.expanded)
-      assurance.not_covered("No uncertainty of " + one.name +
-                            " is given: only its value is compared with the tolerance.");
+      assurance.not_covered(fmt::format(
+          "No uncertainty is given, so only the value is compared with the tolerance: {}.", one.name));
   }
   return assurance;
 }

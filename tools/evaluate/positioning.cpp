@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/evaluate/positioning.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -45,9 +47,10 @@ TargetResult result_at(const TargetReadings& readings) {
     result.count[sense] = list.size();
     if (list.empty()) continue;
     if (list.size() == 1)
-      throw text::InputError("the file has only one reading at " + text::number_text(readings.target) +
-                             (sense == 0 ? " forward" : " backward") +
-                             ": a standard deviation needs at least two readings, ISO 230-2 requires five");
+      throw text::InputError(
+          fmt::format("the file has only one reading at {}{}: a standard deviation needs at least two "
+                      "readings, ISO 230-2 requires five",
+                      text::number_text(readings.target), sense == 0 ? " forward" : " backward"));
     result.mean[sense] = mean_of(list);
     result.spread[sense] = spread_of(list, result.mean[sense]);
     result.repeatability[sense] = 4 * result.spread[sense];
@@ -125,7 +128,8 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
   if (dimension != format::Dimension::kLength && dimension != format::Dimension::kAngle)
     throw text::InputError(reader.header(), axis, "an axis position needs a unit like mm or deg");
   if (reader.dimension(actual) != dimension)
-    throw text::InputError(reader.header(), reading, "the unit has another dimension than " + axis);
+    throw text::InputError(reader.header(), reading,
+                           fmt::format("the unit has another dimension than {}", axis));
   result.unit = format::base_unit(dimension);
   const model::Column position = reader.numbers(axis, dimension, true),
                       readings = reader.numbers(actual, dimension, false);
@@ -161,8 +165,9 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
   }
   for (auto& [key, target] : targets) result.readings.push_back(std::move(target));
   if (result.rows == 0)
-    throw text::InputError(reader.header(), axis,
-                           "no row has a reading and an approach direction (" + dir + " of 1 or -1)");
+    throw text::InputError(
+        reader.header(), axis,
+        fmt::format("no row has a reading and an approach direction ({} of 1 or -1)", dir));
   return result;
 }
 

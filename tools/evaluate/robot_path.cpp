@@ -47,7 +47,7 @@ struct Crossing {
 std::vector<Crossing> stations_of(const Cycle& cycle, std::size_t count) {
   const std::vector<double> way = ways(cycle);
   if (!(way.back() > 0))
-    throw text::InputError("the commanded path of run \"" + cycle.front().run + "\" has no length");
+    throw text::InputError(fmt::format("the commanded path of run \"{}\" has no length", cycle.front().run));
   std::vector<Crossing> stations;
   std::size_t i = 1;
   for (std::size_t k = 0; k < count; ++k) {

@@ -82,7 +82,7 @@ std::vector<Block> blocks_of(const std::string& text, const std::string& file) {
       if (words.size() != block.header.size())
         throw text::InputError(
             {file, number}, words[0],
-            fmt::format("{} fields where the header has {}", words.size(), block.header.size()));
+            fmt::format("this row has {} fields, but the header has {}", words.size(), block.header.size()));
       block.rows.push_back(std::move(words));
       block.line.push_back(number);
     }
@@ -126,7 +126,7 @@ model::Table table_of_block(const Block& block, const std::string& file, const m
     const auto column = error_column(block.header[c], *found);
     if (!column)
       throw text::InputError(place, block.header[c],
-                             "this column is not a component error of axis " + *found);
+                             fmt::format("this column is not a component error of axis {}", *found));
     for (std::size_t i = 0; i < block.rows.size(); ++i) {
       const double value = number_of(block.rows[i][c], {file, block.line[i]});
       table.stations[i].value[*column] = *column < 3 ? value : twelve_digits(value * maths::kDegPerRad);
@@ -140,10 +140,10 @@ model::Table table_of_block(const Block& block, const std::string& file, const m
 
 std::string axis_csv(const model::Machine& machine, const model::Table& table) {
   const model::Axis& axis = machine.axes[table.axis];
-  std::string text = "# error table of axis " + axis.name + ", " +
-                     (table.interpolation == model::Interpolation::kCubic ? "cubic spline" : "linear") +
-                     " between rows, held at the ends; deviations (actual - nominal)\n" + axis.name +
-                     (axis.rotary ? "[deg]" : "[mm]");
+  std::string text = fmt::format(
+      "# error table of axis {}, {} between rows, held at the ends; deviations (actual - nominal)\n{}{}",
+      axis.name, table.interpolation == model::Interpolation::kCubic ? "cubic spline" : "linear", axis.name,
+      axis.rotary ? "[deg]" : "[mm]");
   for (std::size_t k = 0; k < 6; ++k)
     text += "," + own_name(machine, table.axis, k) + (k < 3 ? "[mm]" : "[deg]");
   text += "\n";
@@ -183,8 +183,8 @@ model::Table parse_axis_csv(const std::string& text, const std::string& file, co
       ++k;
     if (k == 6)
       throw text::InputError(place, csv.columns[c].name,
-                             "this column is not an error of axis  " + name + "; known are " +
-                                 own_name(machine, *axis, 0) + " … or " + iso_name(0, name) + " …");
+                             fmt::format("this column is not an error of axis {}; known are {} … or {} …",
+                                         name, own_name(machine, *axis, 0), iso_name(0, name)));
     const std::vector<double> values =
         numbers(c, k < 3 ? format::Dimension::kLength : format::Dimension::kAngle);
     for (std::size_t i = 0; i < values.size(); ++i) table.stations[i].value[k] = values[i];

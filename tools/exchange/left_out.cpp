@@ -121,13 +121,15 @@ std::vector<LeftOut> beyond_tables(const model::Machine& machine, const model::S
 void refuse(const model::Machine& machine, const std::string& format, const std::vector<LeftOut>& left_out,
             bool allowed) {
   if (left_out.empty() || allowed) return;
+  throw text::InputError({machine.file, 0}, "", left_out_in_words(format, left_out));
+}
+
+std::string left_out_in_words(const std::string& format, const std::vector<LeftOut>& left_out) {
   std::string text;
   for (const LeftOut& one : left_out) text += fmt::format("\n  {}: up to {:.4g} um", one.what, one.um);
-  throw text::InputError({machine.file, 0}, "",
-                         format +
-                             " cannot express all errors of this machine; with --leave-out the command "
-                             "writes the other errors:" +
-                             text);
+  return fmt::format(
+      "{} cannot express all errors of this machine; with --leave-out the command writes the other errors:{}",
+      format, text);
 }
 
 }  // namespace vernier::exchange

@@ -29,6 +29,9 @@ std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t 
 /// the largest value at random states.
 std::vector<LeftOut> beyond_tables(const model::Machine& machine, const model::States& at);
 
+/// Returns a sentence with a list of all errors that a format cannot express.
+std::string left_out_in_words(const std::string& format, const std::vector<LeftOut>& left_out);
+
 /// Throws InputError with a list of all errors in `left_out`, unless the list is empty or `allowed` is true.
 void refuse(const model::Machine& machine, const std::string& format, const std::vector<LeftOut>& left_out,
             bool allowed);

@@ -55,7 +55,7 @@ std::string with_element(const std::string& text, const model::Machine& machine,
   if (machine.table_of(table.axis) != nullptr) {
     const std::size_t start = table_start(text, axis), end = find_no_case(text, "</table>", start);
     if (start == kNowhere || end == kNowhere)
-      throw text::InputError({machine.file, 0}, axis, "the text has no table of this axis");
+      throw text::InputError({machine.file, 0}, axis, "the machine file has no table of this axis");
     return text::apply_edits(text, {{start, end + 8 - start, element}});
   }
   const std::size_t list = find_no_case(text, "</comptables>", 0),

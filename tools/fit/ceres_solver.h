@@ -14,10 +14,11 @@ struct CeresOutcome {
   double scale = 1;  // weighted residual above which the robust loss reduces the weight of a reading
 };
 
-/// Returns the factors by which a robust loss weights readings with these weighted residuals. The weight
-/// factor is 1 if the weighted residual is within the scale of the loss. The weighted square of an outlier is
-/// then the square of the scale of the loss. The square of the scale of the loss is the influence of the
-/// outlier on a robust fit (Huber 1981, 6.7).
+/// Returns the factors by which a robust loss weights readings with these weighted residuals. A
+/// reading keeps its full weight (factor 1) if its weighted residual is within the scale of the
+/// robust loss. The weighted square of an outlier is then the square of the scale of the loss. The
+/// square of the scale of the loss is the influence of the outlier on a robust fit (Huber 1981,
+/// 6.7).
 Eigen::VectorXd robust_shares(const Eigen::VectorXd& residual, Loss loss, double scale);
 
 /// Solves the fit problem with Ceres, for robust losses and as a cross-check of the default solver. The Ceres

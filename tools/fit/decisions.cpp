@@ -141,7 +141,7 @@ std::string blame_of(const FitResult& result, const Eigen::VectorXd& step, std::
       names += fmt::format(" and {} more", open[i].parameters.size() - kMostNames);
     text += (i == 0 ? "; the readings do not determine " : " | ") + names;
   }
-  return text + "; fix some of these parameters (--hold NAME), or measure more and other poses";
+  return fmt::format("{}; fix some of these parameters (--hold NAME), or measure more and other poses", text);
 }
 
 }  // namespace vernier::fit

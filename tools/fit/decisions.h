@@ -8,7 +8,8 @@
 
 namespace vernier::fit {
 
-/// A parameter that the readings do not determine. The convention (a prior at nominal) sets its value.
+/// A parameter that the readings do not determine. The convention (a prior at nominal) sets the
+/// value of a parameter that the readings do not determine.
 struct Decision {
   std::vector<std::string> parameters;  // names of the parameters; a column of a table has one name:
                                         // `table.Z.rX`
@@ -26,7 +27,8 @@ std::vector<Decision> decisions_of(const FitResult& result, std::size_t most = 1
 /// of parameters that still changed in the last step, the combinations that the readings do not determine,
 /// and what to do. `step`: the last step of the fit, in units of each parameter's scale; empty if this step
 /// was small. `readings`: number of readings of the fit rows. Readings that determine only touched objects
-/// are not counted. Semicolons separate the parts of the text, and the text has no point at the end.
+/// are not counted. Semicolons separate the parts of the reason, and the reason has no full stop at
+/// the end.
 std::string blame_of(const FitResult& result, const Eigen::VectorXd& step, std::size_t readings);
 
 }  // namespace vernier::fit

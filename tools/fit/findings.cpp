@@ -120,7 +120,7 @@ std::string unvaried_text(const model::FitRecord& record) {
                 : fmt::format("only where {} changed together with {}", one.variable, one.follows);
   }
   if (record.unvaried.size() > kMost) text += fmt::format("; and {} more", record.unvaried.size() - kMost);
-  return text + ". The effect at other values was not measured.";
+  return text + ". The effect was not measured at other values of these variables.";
 }
 
 std::string alternatives_text(const model::FitRecord& record) {
@@ -267,6 +267,8 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                     fmt::format("{}: the model lacks an effect of {:.3g}, {:.3g}, {:.3g} um in x, y, z.",
                                 what, lack_um.x(), lack_um.y(), lack_um.z())});
   }
+  const bool lacks_effect =
+      std::any_of(list.begin(), list.end(), [](const auto& one) { return one.code == "something-missing"; });
   if (!result.noise_um && result.before.rms_um)
     list.push_back({"noise-unknown", 0,
                     "The readings have no standard uncertainty u and no repeats, so the fit cannot "
@@ -277,7 +279,10 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                                 "{:.3g} times that of the nominal machine.",
                                 *result.check_ratio)});
   if (!record.disturbance.empty())
-    list.push_back({"disturbed", record.disturbed, "The survey was disturbed: " + record.disturbance + "."});
+    list.push_back({"disturbed", record.disturbed,
+                    lacks_effect ? "Possibly the survey was disturbed: " + record.disturbance +
+                                       ". The missing effect can look like this disturbance."
+                                 : "The survey was disturbed: " + record.disturbance + "."});
   if (const double share = repeated_poses(m); share >= 0.5)
     list.push_back({"check-not-independent", share,
                     fmt::format("{:.0f} % of the check rows repeat poses of fit rows: these check rows "

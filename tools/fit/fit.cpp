@@ -94,8 +94,8 @@ StatedPriors stated_priors(FitResult& result, const FitOptions& options, const C
       result.priors.emplace_back(result.parameters[i].name, prior.std);
     }
     if (!found)
-      throw text::InputError("\"" + prior.pattern +
-                             "\": no free parameter has this name (the JSON result of fit lists the names)");
+      throw text::InputError(fmt::format(
+          "\"{}\": no free parameter has this name (the JSON result of fit lists the names)", prior.pattern));
   }
   return stated;
 }

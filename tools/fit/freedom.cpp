@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/freedom.h"
 
+#include <fmt/format.h>
+
 #include "tools/fit/selection.h"
 #include "tools/fit/solve.h"
 #include "tools/model/parameters.h"
@@ -16,9 +18,9 @@ void set_freedom(model::Machine& machine, const std::string& pattern, bool free)
     found = true;
   }
   if (!found)
-    throw text::InputError(
-        "\"" + pattern +
-        "\": no static, table column (table.X.rY), BaseShift, ToolShift or scalefactor.X has this name");
+    throw text::InputError(fmt::format(
+        "\"{}\": no static, table column (table.X.rY), BaseShift, ToolShift or scalefactor.X has this name",
+        pattern));
 }
 
 }  // namespace

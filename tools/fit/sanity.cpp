@@ -293,7 +293,7 @@ std::string collapse_of(const model::Machine& fitted, const model::ParameterSet&
     if (least_motion_over(changed, here, ranges).share < kLeast) alone = parameters[i].name;
   }
   return fmt::format(
-      "{} the fitted machine moves the tool by {:.3g} of what the nominal machine does{}: touches of unknown "
+      "{} the fitted machine moves the tool by only {:.3g} of the nominal distance{}: touches of unknown "
       "points agree best if the machine does not move; perhaps two labels are exchanged, or each point was "
       "touched from positions that do not vary enough{}",
       direction_text(least.along), least.share, alone.empty() ? "" : ", by " + alone + " alone",
@@ -378,7 +378,7 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
   constexpr double kMostOfAll = 0.5, kAsGood = 1.5;
   if (const std::string cell = cell_out_of_range(machine, rows); !cell.empty()) return {cell, false};
   if (worst.share > kMostOfAll)
-    return {worst.reading + " is an outlier: no other reading has such a large residual", true};
+    return {fmt::format("{} is an outlier: no other reading has such a large residual", worst.reading), true};
   const model::ParameterSet none;
   const double misfit_mm = convention_of(machine, rows, none).misfit_mm;
   struct Found {
@@ -408,8 +408,30 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
   return {sentence, false};
 }
 
+namespace {
+
+/// A sentence if the rows of each file agree with the machine alone, but not together.
+std::string moved_between_files(const model::Machine& machine, const model::Measurement& rows,
+                                double misfit_mm) {
+  if (rows.files.size() < 2) return {};
+  for (std::size_t file = 0; file < rows.files.size(); ++file) {
+    std::vector<std::size_t> of_file;
+    for (std::size_t row = 0; row < rows.rows(); ++row)
+      if (rows.file[row] == file) of_file.push_back(row);
+    const double alone =
+        convention_of(machine, model::select_rows(rows, of_file), model::ParameterSet()).misfit_mm;
+    if (!(alone < kFivefold * misfit_mm)) return {};
+  }
+  return fmt::format(
+      "each file agrees with the machine alone, so the instrument had different positions; the "
+      "rows of {} and {} share one BaseShift: give them different words in a column \"setup\"",
+      rows.files[0], rows.files[1]);
+}
+
+}  // namespace
+
 std::string missing_set_up(const model::Machine& machine, const model::Measurement& rows, double misfit_mm) {
-  if (!machine.base_shifts.empty()) return {};
+  if (!machine.base_shifts.empty()) return moved_between_files(machine, rows, misfit_mm);
   model::Machine placed = machine;
   placed.base_shifts.emplace_back();
   if (!(convention_of(placed, rows, model::ParameterSet()).misfit_mm < kFivefold * misfit_mm)) return {};

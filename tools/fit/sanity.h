@@ -39,6 +39,7 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
 
 /// Returns a sentence if the machine file has no set-up and a set-up reduces the misfit of the nominal
 /// machine to less than a fifth of `misfit_mm`; otherwise an empty text. `misfit_mm`: misfit without set-up.
+/// If the machine file has a set-up, the sentence is about files that agree with the machine only one by one.
 /// The test is for fits that failed, because free parameters of a machine can replace a set-up.
 std::string missing_set_up(const model::Machine& machine, const model::Measurement& rows, double misfit_mm);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/solve.h"
 
+#include <fmt/format.h>
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -38,8 +39,8 @@ std::vector<Eigen::Index> freed_in(const std::vector<std::string>& patterns,
         found = true;
       }
     if (!found)
-      throw text::InputError("\"" + pattern +
-                             "\": no free parameter has this name (the JSON result of fit lists the names)");
+      throw text::InputError(fmt::format(
+          "\"{}\": no free parameter has this name (the JSON result of fit lists the names)", pattern));
   }
   return {freed.begin(), freed.end()};
 }

@@ -226,8 +226,8 @@ class GatewayPublisher {
     const auto [count, file] =
         desk_.with_spool([](Spool& spool) { return std::pair(spool.count_aside(), spool.aside()); });
     if (count > told_aside_)
-      say_(std::to_string(count) + " damaged records of the store are set aside in " + file +
-           "; the other records are sent");
+      say_(fmt::format("{} damaged records of the store are set aside in {}; the other records are sent",
+                       std::to_string(count), file));
     told_aside_ = count;
   }
 

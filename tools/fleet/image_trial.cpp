@@ -108,7 +108,7 @@ TrialEnd ImageTrial::of_kept() {
   const KeptLook look = look_at_kept(machine_, options_, locks_, stop_);
   if (look.why.empty()) return {Kind::kKept, ""};
   return {look.away ? Kind::kAway : Kind::kNotInEffect,
-          "the image is already permanent on the board, but: " + look.why};
+          fmt::format("the image is already permanent on the board, but: {}", look.why)};
 }
 
 /// Reverts a running trial of this rollout, left by a call that was interrupted. Returns the reason if it
@@ -247,7 +247,7 @@ TrialEnd ImageTrial::keep() {
     return {Kind::kNotInEffect,
             std::string("the board did not confirm the correction image: ") + error.what()};
   }
-  return {Kind::kNotInEffect, "the board did not confirm the correction image: " + why};
+  return {Kind::kNotInEffect, fmt::format("the board did not confirm the correction image: {}", why)};
 }
 
 /// Gives the image up where the trial is this rollout's own.

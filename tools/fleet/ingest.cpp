@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fleet/ingest.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -60,10 +62,10 @@ class Listener {
     }
     for (const auto& [gateway, receipt] : writer_.write(data)) tell(gateway, receipt);
     for (const std::string& machine : writer_.take_not_entered())
-      say_("machine " +
-           nlohmann::json(machine).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) +
-           " is not in the registry: its samples are not stored. The owner enters a machine with `vernier "
-           "fleet add`");
+      say_(
+          fmt::format("machine {} is not in the registry: its samples are not stored. The owner enters a "
+                      "machine with `vernier fleet add`",
+                      nlohmann::json(machine).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)));
     ask_for_births();
   }
 

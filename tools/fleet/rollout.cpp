@@ -61,8 +61,9 @@ class RolloutCall {
   void stages() {
     for (const auto& [machine, state] : states_)
       if (state.state == "taken-back")
-        return stand("this rollout is stopped since " + machine + " (" + state.said +
-                     "); the option --go-on continues the rollout");
+        return stand(
+            fmt::format("this rollout is stopped since {} ({}); the option --go-on continues the rollout",
+                        machine, state.said));
     look_again();
     std::size_t away = 0;
     for (std::size_t i = 0; i < machines_.size() && end_.stood.empty(); ++i) {
@@ -72,7 +73,7 @@ class RolloutCall {
     }
     // A machine that stopped elsewhere must not be reported as kept because of an earlier look.
     if (!end_.stood.empty() && !stop_) return look_again();
-    if (away > 0) stand(fmt::format("{} boards did not answer: call the rollout again", away));
+    if (away > 0) stand(fmt::format("{} boards did not answer: call `vernier fleet rollout` again", away));
   }
 
   bool next_stage(std::size_t away) {
@@ -115,9 +116,10 @@ class RolloutCall {
     board.require_board(machine.claim);
     const auto key = board.proved_key();
     if (!key) {
-      end_.notes.push_back(machine.name +
-                           ": only the name of the board was compared: the board has no key, "
-                           "and another board with the same name would pass");
+      end_.notes.push_back(
+          fmt::format("{}: only the name of the board was compared: the board has no key, and another board "
+                      "with the same name would pass",
+                      machine.name));
       return;
     }
     const std::string text = upload::board_key_text(*key);
@@ -125,9 +127,10 @@ class RolloutCall {
       throw text::LimitNotMet(
           "the registry has the key of this board for another machine: test whether the address is right");
     machine.claim.key = key;
-    end_.notes.push_back(machine.name +
-                         ": the key of its board was not known before and was trusted on first use");
-    say_(machine.name + ": the key of its board is entered in the registry (first use): " + text);
+    end_.notes.push_back(fmt::format(
+        "{}: the key of its board was not known before and was trusted on first use", machine.name));
+    say_(fmt::format("{}: the key of its board is entered in the registry (first use): {}", machine.name,
+                     text));
   }
 
   /// One machine's turn. False: the board is away, and the stage may go on.
@@ -147,7 +150,7 @@ class RolloutCall {
     write(machine, name_of(end.kind), end.why);
     if (end.kind == TrialEnd::Kind::kKept) kept_(machine);
     if (end.kind == TrialEnd::Kind::kTakenBack)
-      stand(machine.name + ": " + end.why + ": reverted, and the rollout stops");
+      stand(fmt::format("{}: {}: the image was reverted, and the rollout stops", machine.name, end.why));
     else if (end.kind != TrialEnd::Kind::kKept && end.kind != TrialEnd::Kind::kAway)
       stand(machine.name + ": " + end.why + ": the rollout stops");
     return end.kind != TrialEnd::Kind::kAway;

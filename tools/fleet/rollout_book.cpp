@@ -44,8 +44,8 @@ void RolloutBook::run(const std::string& set, const std::string& machine,
                   set, n + 1, n + 2, n + 2, n + 3),
       values);
   if (registry_.database().written() != 1)
-    throw registry::LockLost(
-        machine + ": another call works on this machine now, so this call did not change the registry");
+    throw registry::LockLost(fmt::format(
+        "{}: another call works on this machine now, so this call did not change the registry", machine));
 }
 
 void RolloutBook::write(const RolloutMachine& machine, const char* state, const std::string& said) {

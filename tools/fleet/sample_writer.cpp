@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fleet/sample_writer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -169,7 +171,7 @@ void SampleWriter::write(Batch& batch) {
     database.run("UPDATE spool SET stored = $1 WHERE id = $2 AND stored = $3",
                  {number_cell(stored), spool, number_cell(batch.before[spool])});
     if (database.written() != 1)
-      throw registry::DatabaseError("another writer has stored records of " + spool);
+      throw registry::DatabaseError(fmt::format("another writer has stored records of {}", spool));
   }
   for (const auto& [id, names] : batch.names_of_shape)
     database.run("INSERT INTO shape VALUES ($1, $2) ON CONFLICT DO NOTHING", {id, names});

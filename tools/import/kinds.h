@@ -15,8 +15,8 @@ struct ImportKind {
 
 /// Returns all kinds of import, in the order of the help text.
 std::span<const ImportKind> import_kinds();
-/// Returns the kind that reads files with the ending of this name; null if no kind has this ending. Capital
-/// and small letters are equal.
+/// Returns the kind that reads files with the ending of this name; null if no kind has this ending.
+/// The file ending may be in capital or small letters.
 const ImportKind* import_kind_of(std::string_view file);
 
 }  // namespace vernier::importer

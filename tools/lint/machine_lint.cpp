@@ -263,7 +263,8 @@ class Oddities {
     if (m_.base_shifts.empty())
       findings_.remark(0, "BaseShift",
                        "BaseShift is missing: the measuring frame is then the frame of the machine",
-                       "a tracker or CMM has another frame; <BaseShift X=\"0\" …/> lets a fit find where");
+                       "a tracker or CMM has another frame; with <BaseShift X=\"0\" …/> a fit estimates the "
+                       "position of the instrument");
     std::set<std::string> runs;
     for (const model::BaseShift& shift : m_.base_shifts)
       if (shift.run && m_.base_shifts.size() == 1)
@@ -294,12 +295,13 @@ class Oddities {
     const bool base = known->factor == 1 && known->offset == 0;
     if (scales || base || unit == "rad" || unit == "um/m" || unit == "%") return;
     if (known->dimension == format::Dimension::kLength || known->dimension == format::Dimension::kAngle)
-      findings_.warn(line, unit,
-                     "the unit does not convert the value of " + name +
-                         ": the equations of the machine use the value in " +
-                         format::base_unit(known->dimension),
-                     std::string("write the value in ") + format::base_unit(known->dimension) +
-                         ", or the factor in the term");
+      findings_.warn(
+          line, unit,
+          fmt::format(
+              "the unit does not convert the value of {}: the equations of the machine use the value in {}",
+              name, format::base_unit(known->dimension)),
+          fmt::format("write the value in {}, or the factor in the term",
+                      format::base_unit(known->dimension)));
   }
 
   void look_at(const model::Static& item, std::size_t index) {
@@ -332,7 +334,7 @@ class Oddities {
       findings_.warn(axis.line, axis.name,
                      by_table ? "no transform moves with this axis, but the chain uses the table of this axis"
                               : "no transform uses this axis",
-                     "X=\"" + axis.name + "\" is missing in some sixdof, or the name differs");
+                     fmt::format("X=\"{}\" is missing in some sixdof, or the name differs", axis.name));
     if (!axis.min || !axis.max)
       findings_.add_of_kind(
           "travel", LintWeight::kRemark, axis.line, axis.name,
@@ -345,7 +347,7 @@ class Oddities {
       const double travel = *axis.max - *axis.min;
       if (travel < 5)
         findings_.warn(axis.line, axis.name, fmt::format("a travel of {} mm", text::number_text(travel)),
-                       "metres or inches? Axes are in mm");
+                       "is the travel in metres or inches? Axis positions are in mm");
       if (travel > 1e5)
         findings_.warn(axis.line, axis.name, fmt::format("a travel of {} mm", text::number_text(travel)),
                        "µm? Axes are in mm");
@@ -357,7 +359,7 @@ class Oddities {
       findings_.warn(axis.line, axis.name,
                      fmt::format("maxcorrection of {} {}", text::number_text(*axis.max_correction),
                                  axis.rotary ? "deg" : "mm"),
-                     "µm? It is in the axis' unit");
+                     "is the value in µm? Its unit is that of the axis");
     if (!axis.max_correction)
       findings_.add_of_kind(
           "maxcorrection", LintWeight::kRemark, axis.line, axis.name,
@@ -383,12 +385,13 @@ class Oddities {
       if (!used && table.free[c])
         findings_.warn(
             table.line, axis.name,
-            fmt::format("fit frees column {}, which no transform uses", model::kSixDofNames[c]),
+            fmt::format("the attribute fit frees the column {}, which no transform uses",
+                        model::kSixDofNames[c]),
             fmt::format("{}{}{} is missing in some transform", c < 3 ? "l" : "r", axis.name, "xyz"[c % 3]));
     }
     if (!any)
       findings_.warn(table.line, axis.name, "no transform uses this table",
-                     fmt::format("l{0}x … r{0}z are its values", axis.name));
+                     fmt::format("the values of this table are l{0}x … r{0}z", axis.name));
     if (table.stations.empty() || !axis.min || !axis.max) return;
     const double slack = 1e-6 * (*axis.max - *axis.min);
     if (table.stations.front().loc > *axis.min + slack || table.stations.back().loc < *axis.max - slack)

@@ -69,10 +69,11 @@ class Look {
                              "read it: " + command(file_, kind->name)),
              false;
     if (sheet::is_workbook(text_))
-      return findings_.error(0, "", "a workbook (.xlsx), no measurement file", "read it: " + command(file_)),
+      return findings_.error(0, "", "this file is a workbook (.xlsx), not a measurement file",
+                             "read it: " + command(file_)),
              false;
     if (text_.starts_with("\xD0\xCF\x11\xE0"))
-      return findings_.error(0, "", "a workbook of the old kind (.xls)",
+      return findings_.error(0, "", "this file is a workbook of the old format (.xls)",
                              "save the workbook as .xlsx or CSV, then use vernier import table"),
              false;
     const sheet::Encoding encoding = sheet::encoding_of(text_);
@@ -81,14 +82,14 @@ class Look {
                              "read it: " + command(file_)),
              false;
     if (encoding == sheet::Encoding::kUtf8Bom) {
-      findings_.remark(1, "", "begins with a byte order mark", "the commands ignore it");
+      findings_.remark(1, "", "the file begins with a byte order mark", "the commands ignore it");
       text_ = text_.substr(3);
     }
     if (encoding == sheet::Encoding::kWindows1252) {
       if (text_.find('\0') != std::string::npos)
         return findings_.error(0, "", "zero bytes: no text file"), false;
       findings_.warn(0, "", "the file is not UTF-8: letters beyond ASCII are in another code page",
-                     "µ and ° in units will not be understood; " + command(file_) + " reads it");
+                     fmt::format("µ and ° in units will not be understood; {} reads it", command(file_)));
       text_ = sheet::utf8_of(bytes_, encoding);
     }
     if (text_.find('\0') != std::string::npos)
@@ -120,7 +121,7 @@ class Look {
       findings_.error(
           numbers.front(), lines.front().substr(0, 30),
           std::string("columns separated by ") + sheet::separator_word(separator) + ", not by comma",
-          "a spreadsheet or an instrument's table; read it: " + command(file_));
+          fmt::format("a spreadsheet or an instrument's table; read it: {}", command(file_)));
       for (std::size_t i = 1; i < lines.size(); ++i)
         for (const std::string& cell : text::parts_of(lines[i], separator == ' ' ? ' ' : separator))
           if (sheet::decimal_sign_in(cell) == sheet::DecimalSign::kComma) {
@@ -150,7 +151,8 @@ class Look {
     if (trailing_)
       findings_.error(
           table_.header_line, "", "the header ends with commas",
-          "the file has empty columns, as a spreadsheet writes them; import the file with " + command(file_));
+          fmt::format("the file has empty columns, as a spreadsheet writes them; import the file with {}",
+                      command(file_)));
     std::size_t numbers = 0;
     for (const std::string& cell : header_) numbers += sheet::plain_number(cell, false).has_value() ? 1 : 0;
     if (numbers * 2 > header_.size())
@@ -196,7 +198,8 @@ class Look {
           findings_.error(table_.header_line, cell,
                           "this column is a pure number or a word and must not have a unit");
         else if (format::find_unit(needs)->dimension != format::find_unit(column.unit)->dimension)
-          findings_.error(table_.header_line, cell, "this column needs a unit, for example " + needs);
+          findings_.error(table_.header_line, cell,
+                          fmt::format("this column needs a unit, for example {}", needs));
       }
       if (!seen.insert(column.name).second)
         findings_.error(table_.header_line, column.name, "this column occurs twice");
@@ -247,11 +250,13 @@ class Look {
         std::vector<std::string> names;
         for (const LintColumn& column : table_.columns) names.push_back(column.name);
         const auto meant = text::word_meant(axis.name, names);
-        findings_.error(table_.header_line, axis.name, "the column of this axis is missing",
-                        meant && text::letters_apart(axis.name, *meant) == 0
-                            ? "there is " + *meant + ": names have capitals where the machine file has them"
-                            : "if the axis did not move, add its position: vernier import table FILE " +
-                                  model::set_of_axis(axis) + " -o NEW.csv");
+        findings_.error(
+            table_.header_line, axis.name, "the column of this axis is missing",
+            meant && text::letters_apart(axis.name, *meant) == 0
+                ? fmt::format("there is {}: names have capitals where the machine file has them", *meant)
+                : fmt::format(
+                      "if the axis did not move, add its position: vernier import table FILE {} -o NEW.csv",
+                      model::set_of_axis(axis)));
       }
     look_for_motion();
   }
@@ -307,8 +312,8 @@ class Look {
       if (tail && !trailing_)
         findings_.add_of_kind(
             "trailing", LintWeight::kError, row.line, "", "commas at the end of the row",
-            "the file has empty columns, as a spreadsheet writes them; import the file with " +
-                command(file_));
+            fmt::format("the file has empty columns, as a spreadsheet writes them; import the file with {}",
+                        command(file_)));
       if (tail) row.cells.resize(width);
       if (std::all_of(row.cells.begin(), row.cells.end(),
                       [](const std::string& cell) { return cell.empty(); })) {

@@ -136,7 +136,9 @@ class Meaning {
       if (turns && close(180 / std::acos(-1.0))) meaning = "rad read as deg?";
       findings_.add(meaning.empty() ? LintWeight::kRemark : LintWeight::kWarning, table_.header_line,
                     column.name,
-                    fmt::format("moves over {:.3g} of {:.4g} {} only", most - least, travel, unit), meaning);
+                    fmt::format("this column covers only {:.3g} of the travel of {:.4g} {}", most - least,
+                                travel, unit),
+                    meaning);
     }
   }
 
@@ -250,7 +252,7 @@ class Meaning {
       if (before != last.end() && time->value[row] < time->value[before->second])
         findings_.add_of_kind(
             "time " + label, LintWeight::kWarning, line(row), time->cell[row],
-            fmt::format("t falls in {}: {} s after {} s",
+            fmt::format("t decreases in {}: {} s after {} s",
                         label.empty() ? std::string("this file") : "run " + label,
                         text::number_text(time->value[row]), text::number_text(time->value[before->second])),
             "the rows of a run must be in the order of time; begin a new run for a new set-up or another "
@@ -326,8 +328,10 @@ class Meaning {
     if (near(25.4)) meaning = "the positions are in inch?";
     if (near(1 / 25.4)) meaning = "the readings are in inch?";
     if (meaning.empty() && ratio < 0.02)
-      meaning = "deviations instead of positions? vernier import table " + quoted_for_shell(file_) +
-                " --deviation \"X=x\" … adds them to the positions";
+      meaning = fmt::format(
+          "deviations instead of positions? vernier import table {} --deviation \"X=x\" … adds them to the "
+          "positions",
+          quoted_for_shell(file_));
     if (!meaning.empty())
       findings_.warn(
           table_.header_line, columns::kPoint.front(),
@@ -394,8 +398,9 @@ class Meaning {
       if (values[row] > high + kWild * width || values[row] < low - kWild * width)
         findings_.add_of_kind(
             "wild " + column.name, LintWeight::kWarning, line(row), column.cell[row],
-            fmt::format("{} differs from its column by {:.3g} times the spread of the column", column.name,
-                        (values[row] > high ? values[row] - high : low - values[row]) / width),
+            fmt::format(
+                "this value of {} differs from the other values of its column by {:.3g} times their spread",
+                column.name, (values[row] > high ? values[row] - high : low - values[row]) / width),
             "if this value is a mistake, a lost point or a mark for \"no reading\", leave the cell empty");
   }
 

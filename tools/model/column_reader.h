@@ -23,7 +23,8 @@ class ColumnReader {
   void require(const std::string& name, const std::string& why) const;
 
   /// Returns a column of numbers. The unit of the column must have the dimension `dimension`. `filled`: true
-  /// if an empty cell is an error. For a wrong cell, throws InputError with file, line and word.
+  /// if an empty cell is an error. For a cell that is not a valid number, throws InputError with
+  /// file, line and word.
   Column numbers(const std::string& name, format::Dimension dimension, bool filled);
   /// Returns a column as it is in the file, without conversion of units.
   Column raw(const std::string& name);

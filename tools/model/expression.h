@@ -98,8 +98,8 @@ ExprPtr parse_template(std::string_view text);
 /// the expression. `replace` returns the replacement, or null if the name is not changed.
 ExprPtr substitute(const ExprPtr& expr, const std::function<ExprPtr(const std::string&)>& replace);
 
-/// Returns the expression as text with the fewest parentheses. The parser reads this text back to the same
-/// expression.
+/// Returns the expression as text with the fewest parentheses. The parser converts the text of an
+/// expression back to the same expression.
 std::string to_text(const Expr& expr);
 
 ExprPtr make_number(double value);
@@ -123,8 +123,8 @@ std::vector<std::string> function_names();
 /// True if `name` is a function or a fixed quantity of the expression language (t, feed, run, sin ...).
 bool is_reserved_word(std::string_view name);
 
-/// Returns the result of one operation on plain numbers. A comparison returns 1 or 0. Do not call apply() for
-/// a leaf or for kLag.
+/// Returns the result of one operation on plain numbers. A comparison in an expression has the
+/// value 1 (true) or 0 (false). Do not call apply() for a leaf or for kLag.
 double apply(Op op, double a, double b);
 
 /// Calls visit(node) for every node of the expression; the children of a node come before the node.

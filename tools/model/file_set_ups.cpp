@@ -89,7 +89,19 @@ SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& mach
       names.insert(name);
       continue;
     }
-    if (joined || use.stated || !names.insert(name).second) continue;
+    if (joined) continue;
+    if (use.stated) {
+      // Words without a BaseShift mean other positions only beside the words of an earlier file.
+      if (!first->stated) continue;
+      for (const std::string& word : use.words) {
+        if (!names.insert(word).second) continue;
+        elements += element_of(word, *plain) + "\n      ";
+        result.notes.push_back(
+            fmt::format("the set-up \"{}\" of {} has its own BaseShift[{}]", word, rows.files[file], word));
+      }
+      continue;
+    }
+    if (!names.insert(name).second) continue;
     elements += element_of(name, *plain) + "\n      ";
     result.notes.push_back(
         fmt::format("{} has its own set-up BaseShift[{}]; if the instrument had the same position as for {}, "

@@ -86,8 +86,8 @@ struct FitRecord {
   /// determine, its scale does.
   Eigen::MatrixXd factor;
   /// Factor of the undetermined part of the covariance: matrix O, n x m. O O^T is the part of the covariance
-  /// that no reading determines: the variance of the scales that are used instead. If m = 0, the readings
-  /// determine all parameters.
+  /// that no reading determines: the variance of the scales that are used instead. If the factor O
+  /// has no columns (m = 0), the readings determine all parameters.
   Eigen::MatrixXd open;
   bool open_known = false;      // false: the file is older than this entry
   std::vector<Range> measured;  // measured ranges of the fit rows

@@ -158,8 +158,9 @@ struct Machine {
 /// (mm, in its last frame).
 Machine with_tool(const Machine& machine, const std::array<double, 3>& point);
 
-/// Returns the working range of an axis: its range in <volume>, otherwise its min and max. The function
-/// work_range() returns nullopt if the file has neither.
+/// Returns the working range of an axis: its range in <volume>, otherwise its min and max. The
+/// function work_range() returns nullopt if the machine file has neither <volume> nor min and max
+/// for the axis.
 std::optional<std::array<double, 2>> work_range(const Machine& machine, std::size_t axis);
 
 /// Returns the meaning of a name in the expressions of a machine; kUnresolved if the name is unknown.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/model/machine_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <pugixml.hpp>
@@ -84,9 +86,10 @@ class Reader {
     const auto [bad, other] = std::mismatch(text_.begin(), text_.end(), valid.begin(), valid.end());
     if (bad == text_.end()) return;
     const auto at = static_cast<std::size_t>(bad - text_.begin());
-    throw text::InputError({machine_.file, line_at(at)}, word_at(at),
-                           "this letter is not UTF-8: save the file as UTF-8, or convert it: iconv -f " +
-                               declared_encoding() + " -t UTF-8");
+    throw text::InputError(
+        {machine_.file, line_at(at)}, word_at(at),
+        fmt::format("this letter is not UTF-8: save the file as UTF-8, or convert it: iconv -f {} -t UTF-8",
+                    declared_encoding()));
   }
   /// The encoding that the first line states; without one that of Western computers.
   std::string declared_encoding() const {
@@ -161,7 +164,7 @@ class Reader {
     one.transform = static_cast<int>(number(node, "transform", 0));
     const std::string dof = attribute(node, "dof").value_or("");
     while (one.dof < 6 && dof != kSixDofNames[one.dof]) ++one.dof;
-    if (one.dof == 6) fail_attribute(node, "dof", dof, "expected X, Y, Z, rX, rY or rZ");
+    if (one.dof == 6) fail_attribute(node, "dof", dof, "the location must be X, Y, Z, rX, rY or rZ");
     one.axis = attribute(node, "axis").value_or("");
     one.period = number(node, "period", 0);
     if (!one.axis.empty() && !(one.period > 0))
@@ -300,7 +303,8 @@ class Reader {
     if (!word) return std::nullopt;
     const auto value = length_in_mm(*word);
     if (!value)
-      fail_attribute(node, name, *word, std::string(name) + " is a length, for example 12.5mm or 0.5um");
+      fail_attribute(node, name, *word,
+                     fmt::format("{} is a length, for example 12.5mm or 0.5um", std::string(name)));
     return value;
   }
 
@@ -336,7 +340,9 @@ class Reader {
       fail(node, node.name(), "the artefact has no name: give the word of the column on");
     const std::string type = attribute(node, "type").value_or("");
     const auto known = artefact_type_named(type);
-    if (!known) fail_attribute(node, "type", type, "type is point, line, plane, sphere or cylinder");
+    if (!known)
+      fail_attribute(node, "type", type,
+                     "the type of an artefact must be point, line, plane, sphere or cylinder");
     item.type = *known;
     item.setup = attribute(node, columns::kSetup);
     for (const Artefact& other : machine_.artefacts)
@@ -677,7 +683,8 @@ class Reader {
     const std::string branch = attribute(list, "branch").value_or("tool");
     if (branch != "tool" && branch != "workpiece")
       fail_attribute(list, "branch", branch, "branch is tool or workpiece");
-    if (!branches.insert(branch).second) fail(list, branch, "a second <transforms> of this branch");
+    if (!branches.insert(branch).second)
+      fail(list, branch, "the file has a second <transforms> of this branch");
     std::vector<Transform>& transforms = branch == "tool" ? machine_.tool : machine_.workpiece;
     for (const pugi::xml_node node : children(list))
       transforms.push_back(read_transform(node, transforms, branch == "tool"));

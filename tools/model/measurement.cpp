@@ -90,9 +90,9 @@ class Builder {
     std::string set;
     for (const Axis* const axis : missing) set += " " + set_of_axis(*axis);
     throw text::InputError(reader_.header(), missing.front()->name,
-                           "the column of this axis is missing; if the axis did not move, add its position: "
-                           "vernier import table " +
-                               reader_.header().file + set + " -o NEW.csv");
+                           fmt::format("the column of this axis is missing; if the axis did not move, add "
+                                       "its position: vernier import table {}{} -o NEW.csv",
+                                       reader_.header().file, set));
   }
 
   /// Reads the corrections that a board added. Axis positions are the commanded ones until the
@@ -182,7 +182,7 @@ class Builder {
                                  input.name + (written.dimension == format::Dimension::kNone ? "" : "[") +
                                      written.name +
                                      (written.dimension == format::Dimension::kNone ? "" : "]"),
-                                 "the machine file declares this input in " + input.unit);
+                                 fmt::format("the machine file declares this input in {}", input.unit));
         target = (written.factor * target + written.offset - declared->offset) / declared->factor;
       }
       for (std::size_t row = 0; row < reader_.rows(); ++row)
@@ -375,6 +375,13 @@ class Builder {
 
   /// Is a column of labels of things a reading in this file? `on` needs an artefact of the machine file:
   /// older files may have a column of this name.
+  /// Returns the first word of a column that is not empty.
+  std::string first_word(const char* name) const {
+    for (std::size_t row = 0; row < reader_.rows(); ++row)
+      if (!reader_.cell(name, row).empty()) return std::string(reader_.cell(name, row));
+    return {};
+  }
+
   bool names_things(const char* name) const {
     if (!has_word(name)) return false;
     if (std::string_view(name) != columns::kOn || !machine_.artefacts.empty()) return true;
@@ -441,11 +448,13 @@ class Builder {
       if (!one.setup || *one.setup == setup) return one;
       elsewhere = *one.setup;
     }
-    throw text::InputError(reader_.place(row), name,
-                           elsewhere.empty()
-                               ? "the machine file has no artefact of this name; it has " + names
-                               : "the machine file has this artefact in the set-up \"" + elsewhere +
-                                     "\", the row is in the set-up \"" + setup + "\"");
+    throw text::InputError(
+        reader_.place(row), name,
+        elsewhere.empty()
+            ? fmt::format("the machine file has no artefact of this name; it has {}", names)
+            : fmt::format(
+                  "the machine file has this artefact in the set-up \"{}\", the row is in the set-up \"{}\"",
+                  elsewhere, setup));
   }
 
   /// A distance is between two tool points, or between two unknown points.
@@ -506,6 +515,11 @@ class Builder {
       any = any || values[k].size() > 0;
     }
     any = any || names_things(columns::kSame) || names_things(columns::kOn);
+    if (!any && has_word(columns::kOn))
+      throw text::InputError(
+          reader_.header(), columns::kOn,
+          "the machine file has no <artefact>; state what the tool point touched, such as <artefact name=\"" +
+              first_word(columns::kOn) + "\" type=\"plane\"/>, before </variables> of the machine file");
     if (!any)
       throw text::InputError(reader_.header(), "",
                              "no measured column (" + format::reading_column_names() + ")");
@@ -649,7 +663,7 @@ void append_candidates(Measurement& all, const Measurement& next) {
       if (other.name == candidate.name) {
         if (other.unit != candidate.unit)
           throw text::InputError({next.files[0], 0}, other.name,
-                                 "another file gives this column in [" + candidate.unit + "]");
+                                 "another file gives this column in another unit: [" + candidate.unit + "]");
         tail = other.value;
       }
     candidate.value = join(candidate.value, tail);
@@ -736,11 +750,11 @@ void add_corrections(Measurement& m, const Machine& machine, const std::string& 
         m.corrected.begin());
     if (row == m.rows()) return;  // the rows with an active image are excluded
     if (!images)
-      throw text::InputError({m.files.front(), m.line[row]}, m.corrected[row],
-                             "the correction of this image is not known: give the folder of the image "
-                             "(--images DIR), or the columns " +
-                                 format::axis_column(AxisQuantity::kCorrection, machine.axes.front().name) +
-                                 " and so on");
+      throw text::InputError(
+          {m.files.front(), m.line[row]}, m.corrected[row],
+          fmt::format("the correction of this image is not known: give the folder of the image (--images "
+                      "DIR), or the columns {} and so on",
+                      format::axis_column(AxisQuantity::kCorrection, machine.axes.front().name)));
     m.correction.assign(machine.axes.size(), Column::Zero(static_cast<Eigen::Index>(m.rows())));
     images(m, machine, text);
   }
@@ -926,8 +940,9 @@ Measurement read_measurement(const std::vector<std::string>& paths, const Machin
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const std::string text = text::read_file(paths[i]);
     if (const auto [known, is_new] = file_of_text.try_emplace(text, paths[i]); !is_new)
-      throw text::InputError(paths[i] + ": these are the readings of " + known->second +
-                             " once more; give each measurement once");
+      throw text::InputError(
+          fmt::format("{}: this file has the same readings as {}; give each measurement only once", paths[i],
+                      known->second));
     Measurement next = parse_measurement(text, paths[i], machine, images);
     if (i == 0)
       all = std::move(next);

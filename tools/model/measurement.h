@@ -27,8 +27,8 @@ struct Observation {
 };
 
 /// A column of a measurement file that the machine file does not declare as an input. A physical effect that
-/// is missing in the model may depend on a column that is not declared as an input. The value is NaN if the
-/// cell is empty.
+/// is missing in the model may depend on a column that is not declared as an input. An empty cell
+/// of such a column has the value NaN.
 struct CandidateInput {
   std::string name, unit;
   Column value;
@@ -117,8 +117,8 @@ struct Measurement {
 std::string set_up_of_file(const std::string& path, bool with_folder = false);
 
 /// Returns the standard uncertainty of a reading. For a rotation, the standard uncertainty is ua of its row;
-/// if ua is not given, it is u. The unit is mm or deg. The function uncertainty_of() returns 0 if the row has
-/// no uncertainty.
+/// if ua is not given, it is u. The standard uncertainty of a reading is in mm or deg. The function
+/// uncertainty_of() returns 0 if the row has no uncertainty.
 double uncertainty_of(const Measurement& measurement, const Observation& observation);
 
 /// True if the set-up of the instrument has no influence on the reading. A touched object without a known

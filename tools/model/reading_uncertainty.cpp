@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/model/reading_uncertainty.h"
 
+#include <fmt/format.h>
+
 #include <cctype>
 
 #include "tools/format/units.h"
@@ -22,9 +24,10 @@ std::string without_spaces(const std::string& text) {
 }
 
 [[noreturn]] void refuse(const std::string& term) {
-  throw text::InputError("\"" + term +
-                         "\": an uncertainty of readings is written as \"15um + 6um/m\" or, in um with L in "
-                         "mm, as \"2.5 + L/300\"");
+  throw text::InputError(
+      fmt::format("\"{}\": an uncertainty of readings is written as \"15um + 6um/m\" or, in um with L in mm, "
+                  "as \"2.5 + L/300\"",
+                  term));
 }
 
 /// Adds "6um/m" and the like. A bare number is um, as in "2.5 + L/300".

@@ -35,7 +35,7 @@ double error_value(const model::Static& target, const std::string& word, const s
   if (!from || !to || from->dimension != to->dimension)
     throw text::InputError(
         {"--errors", 0}, word,
-        "\"" + name + "\" cannot be converted to \"" + target.unit + "\", the unit of " + target.name);
+        fmt::format("\"{}\" cannot be converted to \"{}\", the unit of {}", name, target.unit, target.name));
   return (*number * from->factor + from->offset - to->offset) / to->factor;
 }
 
@@ -86,7 +86,8 @@ void set_errors(model::Machine& machine, const std::string& text) {
     if (equals == std::string::npos) throw text::InputError({"--errors", 0}, word, "expected NAME=VALUE");
     const auto index = machine.find_static(word.substr(0, equals));
     if (!index)
-      throw text::InputError({"--errors", 0}, word, "no constant (static) has this name in " + machine.name);
+      throw text::InputError({"--errors", 0}, word,
+                             fmt::format("no constant (static) has this name in {}", machine.name));
     model::Static& target = machine.statics[*index];
     if (target.hidden)
       throw text::InputError({"--errors", 0}, word,

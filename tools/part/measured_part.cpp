@@ -49,8 +49,9 @@ PartPoint place_on_part(const Eigen::Vector3d& position, const text::Place& plac
   if (best_mm > kOnSurfaceMm || best.v < -kEdge || best.v > 1 + kEdge)
     throw text::InputError(
         place, point_text(position),
-        fmt::format("no point of the part: {:.3g} mm from the nearest flank, at {:.3g} of its height",
-                    best_mm, best.v));
+        fmt::format(
+            "this point is not on the part: {:.3g} mm from the nearest flank, at {:.3g} of its height",
+            best_mm, best.v));
   return best;
 }
 

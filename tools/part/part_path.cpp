@@ -122,14 +122,15 @@ void check_cutter(const RuledSurface& surface, const Cutter& cutter) {
     if (cutter.length_mm < pose.generatrix_mm)
       throw text::InputError(
           {"--tool-length", 0}, fmt::format("{:g}", cutter.length_mm),
-          fmt::format("shorter than the flank, {:.4g} mm at u = {:.4f}", pose.generatrix_mm, pose.u));
+          fmt::format("the cutter must not be shorter than the flank, {:.4g} mm at u = {:.4f}",
+                      pose.generatrix_mm, pose.u));
     // At the bottom and at the top of the flank the cutter's axis must move forward.
     for (const double v : {0.0, 1.0}) {
       const double h_mm = cutter.length_mm - (1 - v) * pose.generatrix_mm;
       if ((pose.tip_du + h_mm * pose.axis_du).dot(pose.tangent) > 0) continue;
-      throw text::InputError(
-          {"--tool-diameter", 0}, fmt::format("{:g}", 2 * cutter.radius_mm),
-          fmt::format("too thick for the hollow of flank {} at u = {:.4f}", surface.name, pose.u));
+      throw text::InputError({"--tool-diameter", 0}, fmt::format("{:g}", 2 * cutter.radius_mm),
+                             fmt::format("the cutter is too thick for the hollow of flank {} at u = {:.4f}",
+                                         surface.name, pose.u));
     }
   }
 }

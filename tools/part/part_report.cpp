@@ -184,7 +184,7 @@ ordered_json identification_section(const PartJob& job, const ordered_json& resu
              {"y",
               {column("measured", measured), column("model", measured - found.residual_mm),
                column("residual", found.residual_mm)}},
-             {"caption", "In the order of the file."}}}},
+             {"caption", "The points are in the order of the file."}}}},
           {"notes", notes}};
 }
 

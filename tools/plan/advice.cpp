@@ -40,7 +40,7 @@ std::vector<std::string> advice_for(const std::string& text, const model::Machin
     try {
       return next_measurement(text, machine, m, a, b, effects);
     } catch (const text::InputError& error) {
-      return {fmt::format("no advice on {} against {}: {}", a, b, error.what())};
+      return {fmt::format("no measurement was found that distinguishes {} from {}: {}", a, b, error.what())};
     }
   };
   std::vector<std::string> uneven;

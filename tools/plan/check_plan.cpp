@@ -202,10 +202,10 @@ std::string check_plan_text(const CheckPlan& plan, double reading_um) {
   if (!plan.not_seen.empty()) {
     std::vector<std::string> first = plan.not_seen;
     first.resize(std::min(first.size(), kNamed));
-    text +=
+    text += fmt::format(
         "the check cannot detect a change of these parameters (no motion of the tool point, or the same "
-        "motion as another set-up): " +
-        text::joined(first, ", ");
+        "motion as another set-up): {}",
+        text::joined(first, ", "));
     if (first.size() < plan.not_seen.size())
       text += fmt::format(" and {} others", plan.not_seen.size() - first.size());
     text += '\n';

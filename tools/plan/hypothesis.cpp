@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/plan/hypothesis.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -45,8 +47,8 @@ std::string best_of_effect(const diagnose::Evidence& evidence, const effects::Ef
   const Eigen::MatrixXd none(evidence.residual().size(), 0);
   std::vector<diagnose::Scored> scored = scanner.scan(none, {});
   if (scored.empty())
-    throw text::InputError("\"" + effect.id +
-                           "\": these rows do not show it at any location (give an add string)");
+    throw text::InputError(
+        fmt::format("\"{}\": these rows do not show it at any location (give an add string)", effect.id));
   const auto value = [&](const diagnose::Scored& item) {
     constexpr double kPriceOfDegenerate = 6;  // as much evidence as a form that contains a simpler one needs
     return value_of(item, evidence) - (degenerate(item, list[item.candidate]) ? kPriceOfDegenerate : 0);
@@ -104,7 +106,7 @@ FittedHypothesis fit_hypothesis(const effects::MachineText& model, const diagnos
                                 const std::vector<effects::Effect>& effects) {
   const effects::Effect* effect = effect_named(effects, id_of(name));
   if (effect == nullptr)
-    throw text::InputError("\"" + id_of(name) + "\": unknown effect (`vernier effects` lists them)");
+    throw text::InputError(fmt::format("\"{}\": unknown effect (`vernier effects` lists them)", id_of(name)));
   FittedHypothesis hypothesis;
   hypothesis.add = name.find(':') == std::string::npos ? best_of_effect(evidence, *effect) : name;
   const model::Machine& base = model.machine;
@@ -135,8 +137,8 @@ std::vector<std::string> split_hypotheses(const std::vector<std::string>& argume
     parts.push_back(argument.substr(from));
   }
   if (parts.size() != 2)
-    throw text::InputError("--separate requires two effects; the number of given effects is " +
-                           std::to_string(parts.size()));
+    throw text::InputError(
+        fmt::format("--separate requires two effects; the number of given effects is {}", parts.size()));
   return parts;
 }
 

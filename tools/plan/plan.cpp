@@ -301,9 +301,9 @@ std::vector<std::string> next_measurement(const std::string& text, const model::
   const Plan plan = plan_next(text, machine, measurement, a, b, effects, options);
   std::vector<std::string> list = {plan.sentence};
   if (plan.separable)
-    list.push_back(
-        fmt::format("The rows: vernier plan MACHINE MEAS --separate '{}' --separate '{}' -o plan.csv",
-                    plan.a.add, plan.b.add));
+    list.push_back(fmt::format(
+        "To write the planned rows: vernier plan MACHINE MEAS --separate '{}' --separate '{}' -o plan.csv",
+        plan.a.add, plan.b.add));
   return list;
 }
 

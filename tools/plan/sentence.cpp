@@ -190,7 +190,7 @@ std::string Explanation::sentence() const {
   const Separation& worse = plan_.worse();
   std::string beyond;
   for (const std::string& name : plan_.not_settable)
-    beyond += fmt::format(" {} is logged, but a plan cannot set it.", name);
+    beyond += fmt::format(" The column {} is logged, but a plan cannot set its value.", name);
   if (plan_.told_already && plan_.rows.rows() == 0)
     return fmt::format(
         "The rows measured so far already distinguish the two effects: {} explains the rows better than {} "

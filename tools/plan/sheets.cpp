@@ -232,9 +232,9 @@ std::string plan_csv(const Plan& plan) {
   sheet.add_readings();
   std::string text = "# " + plan.sentence + "\n";
   if (!plan.rows.correction.empty())
-    text += "# with the correction off (or give what it adds in columns " +
-            format::axis_column(format::AxisQuantity::kCorrection, plan.machine.axes.front().name) +
-            " and so on)\n";
+    text += fmt::format(
+        "# Measure with the correction off (or give the active correction in columns {} and so on)\n",
+        format::axis_column(format::AxisQuantity::kCorrection, plan.machine.axes.front().name));
   for (std::size_t i = 0; i < sheet.columns.size(); ++i) text += (i ? "," : "") + sheet.columns[i].header;
   text += "\n";
   for (std::size_t row = 0; row < plan.rows.rows(); ++row) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/plan/uneven.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -81,9 +83,9 @@ std::string uneven_sentence(const model::Machine& machine, const model::Measurem
   for (const double q : uneven_positions(*low, *high, taken, kPositions))
     text += (text.empty() ? "" : ", ") + text::number_text(q);
   const model::Axis& item = machine.axes[axis];
-  return "Measure " + item.name + " in uneven steps as well, to distinguish the " +
-         std::to_string(finding.aliases.size() + 1) + " periods: " + text +
-         (item.rotary ? " deg, both directions." : " mm, both directions.");
+  return fmt::format(
+      "Measure also at these uneven positions of the axis {}, to distinguish the {} periods: {}{}", item.name,
+      finding.aliases.size() + 1, text, item.rotary ? " deg, both directions." : " mm, both directions.");
 }
 
 }  // namespace vernier::plan

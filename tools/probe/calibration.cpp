@@ -213,21 +213,20 @@ void say_plane(const RoundTouches& touches, const CalibrationSetup& setup,
                std::vector<std::string>& findings) {
   if (setup.artefact != CalibrationArtefact::kSphere || touches.sphere) return;
   constexpr double kOff_mm = 0.5;  // accuracy of placing a sphere by hand
-  findings.push_back(
-      fmt::format("The sphere was touched in one plane, taken to go through its centre: {} mm beside it "
-                  "would make the effective tip radius {:.1f} um too small.",
-                  kOff_mm, kOff_mm * kOff_mm / setup.size_mm * maths::kUmPerMm));
+  findings.push_back(fmt::format(
+      "The sphere was touched in one plane. The result assumes that this plane goes through the centre: a "
+      "plane {} mm beside the centre makes the effective tip radius {:.1f} um too small.",
+      kOff_mm, kOff_mm * kOff_mm / setup.size_mm * maths::kUmPerMm));
 }
 
 void say_round(const RoundTouches& touches, const LeverReach& reach, double gap,
                std::vector<std::string>& findings) {
   say_feeds(touches.speed * maths::kSecondsPerMinute, reach.delay, findings);
   if (!reach.lobes && gap > kLargestGapDeg)
-    findings.push_back(fmt::format(
-        "No touch in {:.0f} deg of the azimuth: a three-lobed pretravel cannot be distinguished from an "
-        "eccentric centre. Touch all round, "
-        "every 30 deg or closer.",
-        gap));
+    findings.push_back(
+        fmt::format("There is no touch in {:.0f} deg of the azimuth: a three-lobed pretravel cannot be "
+                    "distinguished from an eccentric centre. Touch all round, every 30 deg or closer.",
+                    gap));
   if (touches.braking.cwiseAbs().maxCoeff() == 0)
     findings.push_back(
         "The evaluation assumes a constant feed at every touch; if an approach is too short for a constant "
@@ -336,9 +335,10 @@ void refuse_absurd(const ProbeCalibration& result, const CalibrationSetup& setup
                     table.file(), delay->value, kHint));
   const Calibrated* const tip = result.find("effective_tip_radius");
   if (tip && std::abs(tip->value) - 3 * tip->std > setup.size_mm)
-    throw text::InputError(fmt::format(
-        "{}: the touches give an effective tip radius of {:.4g} mm beside an artefact of {:.4g} mm: {}",
-        table.file(), tip->value, setup.size_mm, kHint));
+    throw text::InputError(
+        fmt::format("{}: the touches give an effective tip radius of {:.4g} mm, which is larger than the "
+                    "artefact of {:.4g} mm: {}",
+                    table.file(), tip->value, setup.size_mm, kHint));
 }
 
 // Conditions of the touches, if they are given.

@@ -34,8 +34,9 @@ void check(const CirclePath& path) {
   const double arc = path.to_deg - path.from_deg;
   need(path.radius_mm > 0, "radius", "must be above zero");
   need(path.feed_mm_min > 0, "feed", "must be above zero");
-  need(arc > 0 && arc <= 360, "arc", "must go up by at most 360 deg");
-  need(path.overshoot_deg >= 0 && path.overshoot_deg <= 360, "overshoot", "must be 0 to 360 deg");
+  need(arc > 0 && arc <= 360, "arc", "the end of the arc must be above its start, by at most 360 deg");
+  need(path.overshoot_deg >= 0 && path.overshoot_deg <= 360, "overshoot",
+       "the overshoot must be 0 to 360 deg");
   need(path.feed_in_mm > 0 && path.feed_in_mm < path.radius_mm, "feed-in",
        "the value must be above zero and below the radius");
   need(path.pause_s >= 0, "pause", "must not be negative");

@@ -72,8 +72,8 @@ Touches read_touches(TouchTable& table, const FeatureSetup& setup, std::vector<s
   auto t = table.find({"T"});
   if (!t && setup.temperature_degC) t = VectorXd::Constant(rows, *setup.temperature_degC);
   if (!t)
-    throw text::InputError(table.file() +
-                           ": the expansion needs a temperature (column T[degC], or --temperature)");
+    throw text::InputError(fmt::format(
+        "{}: the expansion needs a temperature (column T[degC], or --temperature)", table.file()));
   for (Index i = 0; i < rows; ++i)
     touches.p.row(i) /= 1 + *setup.expansion_per_K * ((*t)(i)-maths::kReferenceDegC);
   findings.push_back(

@@ -121,9 +121,10 @@ std::optional<Eigen::VectorXd> TouchTable::find(const std::vector<std::string>& 
     for (const Column& column : columns_) {
       if (column.name != name) continue;
       if (found != nullptr && found->printed != column.printed)
-        notes_.push_back(fmt::format("{}: as printed, not the repaired column (--column {}={} takes that)",
-                                     name, csv_.columns[(column.printed ? *found : column).index].name,
-                                     names.front()));
+        notes_.push_back(
+            fmt::format("{}: the values are as printed, not from the repaired column (--column {}={} uses "
+                        "the repaired column)",
+                        name, csv_.columns[(column.printed ? *found : column).index].name, names.front()));
       if (found == nullptr || column.printed) found = &column;
     }
     if (found != nullptr) break;
@@ -153,7 +154,8 @@ Eigen::VectorXd TouchTable::need(const std::vector<std::string>& names, const st
 
 std::optional<Eigen::VectorXd> TouchTable::uncertainty() {
   auto u = find({"u"});
-  if (u && u->minCoeff() <= 0) throw text::InputError(csv_.file + ": u is not above 0 in every row");
+  if (u && u->minCoeff() <= 0)
+    throw text::InputError(fmt::format("{}: u is not above 0 in every row", csv_.file));
   return u;
 }
 

@@ -53,7 +53,7 @@ std::string file_meant(const std::string& given) {
     if (fs::exists(fs::path(given) / name)) return (fs::path(given) / name).string();
   throw text::InputError(
       {given, 0}, "",
-      fmt::format("is a folder without {}: name a file in it", fmt::join(kOfFolders, " or ")));
+      fmt::format("this is a folder without {}: name a file in the folder", fmt::join(kOfFolders, " or ")));
 }
 
 /// An absolute path in the command line moves into the mirror.

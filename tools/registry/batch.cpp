@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/registry/batch.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <optional>
@@ -52,13 +54,15 @@ Found find(const std::string& folder, const Batch& batch, const std::string& mac
   };
   if (!std::filesystem::is_regular_file(file)) return no("missing", "no " + file);
   const auto json = object_of(text::read_file(file));
-  if (!json) return no("incomplete", file + " is not a whole JSON object");
+  if (!json) return no("incomplete", fmt::format("{} is not a whole JSON object", file));
   const auto is = [&](const char* key, auto test) { return json->contains(key) && test((*json)[key]); };
   const auto is_text = [](const Json& value) { return value.is_string(); };
   if (!is("batch", is_text) || !is("machine", is_text) || !is("message", is_text) ||
       !json->contains("result") || !is("status", [](const Json& value) { return value.is_number_integer(); }))
-    return no("incomplete", file + " has not all of batch, machine, status, message, result");
-  if ((*json)["batch"] != batch.id) return no("refused", file + " is an answer of another batch");
+    return no("incomplete",
+              fmt::format("{} lacks one of the keys batch, machine, status, message, result", file));
+  if ((*json)["batch"] != batch.id)
+    return no("refused", fmt::format("{} is an answer of another batch", file));
   if ((*json)["machine"] != machine)
     return no("refused", file + " is the answer of " + (*json)["machine"].get<std::string>());
   found.answer.status = (*json)["status"].get<std::int64_t>();
@@ -81,7 +85,7 @@ void list_others(const std::string& folder, const Batch& batch, Collected& colle
   }
   std::sort(others.begin(), others.end());
   for (const std::string& machine : others)
-    collected.not_booked.push_back({machine, "refused", "is not a machine of this batch"});
+    collected.not_booked.push_back({machine, "refused", "this machine is not in the batch"});
 }
 
 }  // namespace
@@ -133,7 +137,7 @@ Batch read_batch(const std::string& folder) {
 
 std::vector<std::string> command_of(const Batch& batch, const std::string& machine) {
   if (!std::binary_search(batch.machines.begin(), batch.machines.end(), machine))
-    throw text::InputError({}, machine, "is not a machine of this batch");
+    throw text::InputError({}, machine, "this machine is not in the batch");
   std::vector<std::string> words;
   for (const std::string& word : batch.command) words.push_back(for_machine(word, machine));
   return words;
@@ -163,7 +167,8 @@ Collected collect(Registry& registry, const std::string& folder, const Batch& ba
   for (const std::string& machine : batch.machines) {
     Found found = find(folder, batch, machine);
     if (found.why_not.state.empty() && !entered.contains(machine))
-      found.why_not = {machine, "refused", "is not in the registry: vernier fleet add " + machine};
+      found.why_not = {machine, "refused",
+                       fmt::format("is not in the registry: vernier fleet add {}", machine)};
     if (!found.why_not.state.empty()) {
       collected.not_booked.push_back(found.why_not);
       continue;

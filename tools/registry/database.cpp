@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/registry/database.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "tools/text/error.h"
@@ -28,9 +30,10 @@ void refuse_foreign(Database& database, const std::string& ours) {
              : "SELECT 1 FROM sqlite_master WHERE name = $1";
   const std::vector<Row> found = database.run(tables);
   if (found.empty() || !database.run(own, {ours}).empty()) return;
-  throw text::InputError({}, database.name(),
-                         "the database belongs to another program (it has the table " +
-                             found[0][0].value_or("") + "): nothing is written");
+  throw text::InputError(
+      {}, database.name(),
+      fmt::format("the database belongs to another program (it has the table {}): nothing is written",
+                  found[0][0].value_or("")));
 }
 
 void insert_rows(Database& database, const std::string& head, const std::vector<Row>& rows,

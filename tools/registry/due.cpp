@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/registry/due.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -21,7 +23,7 @@ DueMachine judged(const FleetMachine& machine, const FleetCheck* last, const Rec
   } else if (runs != nullptr && runs->at_us > last->at_us) {
     one.due_us = runs->at_us, one.why = "not checked since its calibration";
   } else if (last->verdict != "valid") {
-    one.due_us = last->at_us, one.why = "the verdict of the last check: " + last->verdict;
+    one.due_us = last->at_us, one.why = fmt::format("the verdict of the last check: {}", last->verdict);
   }
   return one;
 }

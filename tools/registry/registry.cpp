@@ -155,7 +155,7 @@ std::vector<FleetMachine> Registry::machines() {
 FleetMachine Registry::machine(const std::string& name) {
   for (FleetMachine& machine : machines())
     if (machine.name == name) return std::move(machine);
-  throw text::InputError({}, name, "no machine has this name in " + database_->name());
+  throw text::InputError({}, name, fmt::format("no machine has this name in {}", database_->name()));
 }
 
 void Registry::give_name(const std::string& from, const std::string& to) {

@@ -86,7 +86,7 @@ std::string diagnose_report_html(const Json& result) {
 }
 
 std::string improve_report_html(const Json& result) {
-  return result_page("From the model to a better one", "improve", result);
+  return result_page("Improvement of the model, step by step", "improve", result);
 }
 
 std::string improvement_report_html(const Json& result) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/residual/omnibus.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -114,7 +116,7 @@ class Tester {
       const Eigen::VectorXd rest = sample.without({0});
       for (const std::size_t phase : {0u, 1u})
         sort.add(serial_pairs(sample, m, rest, phase).log_p,
-                 std::string(sample.name()) + " against the order of the rows");
+                 fmt::format("{} against the order of the rows", std::string(sample.name())));
       auto found = pairs.find(sample.rows);
       if (found == pairs.end()) {
         found = pairs.try_emplace(sample.rows).first;

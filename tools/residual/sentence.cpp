@@ -66,8 +66,8 @@ std::string statement(const Finding& f, const SentenceFacts& facts) {
     case Shape::kConstant:
       return fmt::format("{} is {:.3g} {} on average", subject(f), (f.high_um + f.low_um) / 2, unit_of(f));
     case Shape::kReverses:
-      return fmt::format("{} reverses with {}: {:.3g} {} between the two senses", subject(f), f.column,
-                         f.high_um - f.low_um, unit_of(f));
+      return fmt::format("{} reverses with {}: {:.3g} {} between the two approach directions", subject(f),
+                         f.column, f.high_um - f.low_um, unit_of(f));
     case Shape::kJumps:
       return fmt::format("{} jumps between runs: {:.3g} {} from run {} to run {}", subject(f),
                          f.high_um - f.low_um, unit_of(f), facts.lowest_run, facts.highest_run);
@@ -80,7 +80,8 @@ std::string statement(const Finding& f, const SentenceFacts& facts) {
                            f.column == format::columns::kRun ? f.second_column : f.column,
                            f.high_um - f.low_um, unit_of(f));
       return fmt::format(
-          "{} depends on {} times {}: how it depends on one changes with the other ({:.3g} {} in all)",
+          "{} depends on {} times {}: the dependence on one of the two changes with the other ({:.3g} {} in "
+          "all)",
           subject(f), f.column, f.second_column, f.high_um - f.low_um, unit_of(f));
     case Shape::kWanders:
       return fmt::format(

@@ -26,16 +26,16 @@ constexpr std::array<const char*, importer::kDiagnosticsCount> kWords = {
     "servo mismatch",
     "fourth wave",
     "radius, between the senses",
-    "centre along A, between the senses",
-    "centre along B, between the senses",
+    "centre along A, difference between the directions of rotation",
+    "centre along B, difference between the directions of rotation",
     "backlash of A",
-    "backlash of A, between its ends",
+    "backlash of A, difference between its ends",
     "backlash of B",
-    "backlash of B, between its ends",
+    "backlash of B, difference between its ends",
     "lateral play of A",
-    "lateral play of A, between its ends",
+    "lateral play of A, difference between its ends",
     "lateral play of B",
-    "lateral play of B, between its ends"};
+    "lateral play of B, difference between its ends"};
 
 /// The letter of the axis for A and B if they are separate words.
 std::string in_words(const char* words, const Circle& circle) {

@@ -81,25 +81,29 @@ std::string sentence(const residual::BeforeAfter& result) {
     case residual::Helped::kCannotBeTold:
       break;
   }
-  return "The readings do not show whether the correction reduced the error: " + how + ", which contains 0.";
+  return fmt::format(
+      "The readings do not show whether the correction reduced the error: {}, which contains 0.", how);
 }
 
 /// Method of the comparison, and remarks for the reader.
 std::vector<std::string> remarks(const residual::BeforeAfter& result) {
   std::vector<std::string> list;
   if (result.paired)
-    list.push_back(fmt::format("{} poses that both have, compared one by one", result.samples));
+    list.push_back(
+        fmt::format("{} poses occur in both measurements, and are compared pose by pose", result.samples));
   else
     list.push_back(
         "the two measurements have different poses: the comparison uses all rows of both, in blocks of "
         "neighbouring rows");
   if (result.unmatched_before + result.unmatched_after > 0)
-    list.push_back(fmt::format(
-        "excluded, because their poses occur only before or only after: {} rows before, {} rows after",
-        result.unmatched_before, result.unmatched_after));
+    list.push_back(
+        fmt::format("excluded rows, because their poses occur only before or only after the correction: {} "
+                    "rows before, {} rows after",
+                    result.unmatched_before, result.unmatched_after));
   if (result.corrected_before > 0)
     list.push_back(
-        fmt::format("{} rows of `before` state that a correction was on", result.corrected_before));
+        fmt::format("{} rows of the measurement before the correction state that a correction was active",
+                    result.corrected_before));
   return list;
 }
 

@@ -134,8 +134,8 @@ void add_not_covered(text::Assurance& assurance, const model::Machine& machine, 
       one_way += (one_way.empty() ? "" : ", ") + axis.name;
   }
   if (!one_way.empty())
-    assurance.not_covered("The rows do not have both approach directions of " + one_way +
-                          ": reversal errors are not covered.");
+    assurance.not_covered(fmt::format(
+        "The rows do not have both approach directions of {}: reversal errors are not covered.", one_way));
   for (std::size_t i = 0; i < machine.inputs.size(); ++i)
     if (const auto at = constant_value(m, m.states.input[i]))
       assurance.not_covered(fmt::format("{0} is {1:.6g} {2} in every row: errors with {0} are not covered.",

@@ -99,7 +99,9 @@ text::Assurance assurance_of(const fit::FitResult& result) {
   std::string open;
   for (const fit::ParameterEstimate& item : result.estimates)
     if (item.from == fit::Origin::kPrior) open += (open.empty() ? "" : ", ") + item.name;
-  if (!open.empty()) word.not_covered("Not measured, stay at nominal +- scale: " + open + ".");
+  if (!open.empty())
+    word.not_covered(
+        fmt::format("These parameters are not measured and stay at nominal +- scale: {}.", open));
   return word;
 }
 
@@ -118,7 +120,7 @@ text::Assurance assurance_of(const safety::SafetySheet& sheet, const model::Mach
                                culprit, one.reason));
   }
   for (const std::string& name : sheet.stale)
-    word.not_covered(name + " was added or set by hand since the fit.");
+    word.not_covered(fmt::format("A parameter was added or set by hand since the fit: {}.", name));
   return word;
 }
 

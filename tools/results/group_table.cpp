@@ -74,8 +74,8 @@ std::vector<std::string> values_of(const model::Machine& machine, const model::M
     return values;
   }
   throw text::InputError({}, column,
-                         "the measurement has no such column for groups; its columns are " +
-                             text::joined(known_columns(machine, m), ", "));
+                         fmt::format("the measurement has no such column for groups; its columns are {}",
+                                     text::joined(known_columns(machine, m), ", ")));
 }
 
 /// log of the probability that means of groups with the same standard deviation differ so much; 0 without
@@ -108,8 +108,10 @@ ordered_json one_column(const model::Machine& machine, const model::Measurement&
   }
   constexpr std::size_t kMostGroups = 50;  // rows of a table that a person reads
   if (seen.size() > kMostGroups)
-    throw text::InputError({}, column,
-                           fmt::format("{} different values: too many groups to distinguish", seen.size()));
+    throw text::InputError(
+        {}, column,
+        fmt::format("the column has {} different values, which are too many groups to distinguish",
+                    seen.size()));
   double least = 0;
   for (const auto& [kind, groups] : kinds) least = std::min(least, log_chance(groups));
   ordered_json each = ordered_json::array();

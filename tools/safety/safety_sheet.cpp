@@ -25,6 +25,7 @@ namespace {
 struct RuleText {
   const char *name, *unit, *reason;
   double limit;
+  const char* remedy = "";  // what the user can do instead of accepting the rule
 };
 
 /// Limits, each with its reason. Ratios have no unit.
@@ -36,11 +37,13 @@ const RuleText& text_of(SafetyRule rule) {
       {"cancellation", "times the correction",
        "terms ten times larger than their sum are valid only where they were measured together", 10},
       {"uncertainty", "of the correction",
-       "a correction whose standard uncertainty exceeds half of its value may increase the error", 0.5},
+       "a correction whose standard uncertainty exceeds half of its value may increase the error", 0.5,
+       "measure more poses, or fit fewer parameters: fit --hold NAME, such as --hold \"table.*\""},
       {"measured-range", "of the measured range",
-       "outside the measured range the last value of a table is used and terms are extrapolated", 0.25},
+       "outside the measured range the last value of a table is used and terms are extrapolated", 0.25,
+       "measure the whole travel, or state the measured range as min and max of the axis"},
       {"input-range", "of the measured range", "a term in an input is valid only within its measured range",
-       1},
+       1, "measure at the temperatures at which the machine runs"},
       {"set-up", "um",
        "a shift that is the same at every pose is the position of the instrument, not an error of the "
        "machine",
@@ -50,10 +53,11 @@ const RuleText& text_of(SafetyRule rule) {
        "readings with such a large residual are not readings of this machine", 0.02},
       {"outlier", "times the residual's spread", "one reading is an outlier that distorts the fit", 20},
       {"check-rows", "times the nominal machine's",
-       "the correction must reduce the error of the held-out rows, compared with no correction (95 %)", 1},
+       "the correction must reduce the error of the held-out rows, compared with no correction (95 %)", 1,
+       "fit fewer parameters, or add what diagnose names"},
       {"disturbed", "of the errors that the machine shows",
        "an effect that is not in the model, as large as the errors of the machine, has distorted the fit",
-       0.75},
+       0.75, "run diagnose, or measure again in one set-up"},
       {"bound", "of the correction", "the error bound of a compiled image must not exceed its correction", 1},
   }};
   return kTexts[static_cast<std::size_t>(rule)];
@@ -295,8 +299,8 @@ std::vector<SafetyRule> rules_named(const std::vector<std::string>& names) {
       std::string all;
       for (std::size_t i = 0; i < kSafetyRuleCount; ++i)
         all += (i > 0 ? ", " : "") + std::string(rule_name(static_cast<SafetyRule>(i)));
-      throw text::InputError("--accept \"" + name +
-                             "\": the safety sheet has no rule of this name; its rules are " + all);
+      throw text::InputError(fmt::format(
+          "--accept \"{}\": the safety sheet has no rule of this name; its rules are {}", name, all));
     }
     rules.push_back(*rule);
   }
@@ -314,6 +318,13 @@ void SafetySheet::judge(SafetyRule rule, std::optional<double> value, std::strin
 
 bool SafetySheet::ok() const {
   return std::all_of(findings.begin(), findings.end(), [](const auto& f) { return f.ok || f.accepted; });
+}
+
+std::vector<std::string> SafetySheet::not_known() const {
+  std::vector<std::string> names;
+  for (const SafetyFinding& f : findings)
+    if (!f.value) names.emplace_back(rule_name(f.rule));
+  return names;
 }
 
 std::uint32_t SafetySheet::accepted_mask() const {
@@ -341,6 +352,7 @@ std::string SafetySheet::refusal() const {
   std::string text = fmt::format("not safe to run: {}", figures(worst));
   if (!worst.culprit.empty()) text += ": " + worst.culprit;
   text += fmt::format(" ({})", worst.reason);
+  if (const std::string remedy = text_of(worst.rule).remedy; !remedy.empty()) text += "; " + remedy;
   std::string accept;
   for (const SafetyFinding* finding : failed) {
     if (finding != &worst) text += fmt::format("; also not met: {}", figures(*finding));

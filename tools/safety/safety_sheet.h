@@ -52,6 +52,8 @@ struct SafetySheet {
   void judge(SafetyRule rule, std::optional<double> value, std::string culprit,
              const std::vector<SafetyRule>& accepted);
   bool ok() const;
+  /// Returns the names of the rules without a value: nothing states the quantity, so the rule judged nothing.
+  std::vector<std::string> not_known() const;
   std::uint32_t accepted_mask() const;  // bit n is rule n
   /// Returns one line of text: the rule with the largest excess over its limit, its value, limit and culprit,
   /// and then the other rules that are not met. The line is empty if all rules are met.

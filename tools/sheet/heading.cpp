@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/sheet/heading.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -156,14 +158,15 @@ void refuse_rows_of_words(const Sheet& sheet) {
     number = *found;
   }
   if (2 * rows <= sheet.rows.size()) return;
-  throw text::InputError({sheet.file, sheet.line[first]}, text::joined(sheet.rows[first], "; ").substr(0, 40),
-                         "this row has one number (" + number + ") and " +
-                             std::to_string(sheet.rows[first].size() - 1) +
-                             " cells of words: a row of measured data needs the positions of the axes as "
-                             "numbers. If the words name "
-                             "points, add columns with the positions of the points (X[mm], Y[mm] and so on); "
-                             "for distances between "
-                             "points use the columns same, from and distance[mm] (tools/docs/touch.md)");
+  throw text::InputError(
+      {sheet.file, sheet.line[first]}, text::joined(sheet.rows[first], "; ").substr(0, 40),
+      fmt::format("this row has more words than numbers (number: {}): a row of measured data needs the "
+                  "positions of the "
+                  "axes as numbers. If the words name points, add columns with the positions of the points "
+                  "(X[mm], Y[mm] "
+                  "and so on); for distances between points use the columns same, from and distance[mm] "
+                  "(tools/docs/touch.md)",
+                  number));
 }
 
 /// No row of data: the message names the probable cause.
@@ -174,9 +177,9 @@ void refuse_rows_of_words(const Sheet& sheet) {
     for (const std::string& cell : sheet.rows[row]) {
       if (const auto both = number_and_unit(cell, sheet.decimal_comma))
         throw text::InputError({sheet.file, sheet.line[row]}, cell,
-                               "a number with the unit " + both->second + ", and " + none +
-                                   "; write the unit in the heading ([" + both->second +
-                                   "]), numbers alone in the cells");
+                               fmt::format("a number with the unit {}, and {}; write the unit in the heading "
+                                           "([{}]), numbers alone in the cells",
+                                           both->second, none, both->second));
       const auto at = cell.find(':');
       const bool number = at != std::string::npos && plain_number(cell.substr(0, at), sheet.decimal_comma);
       colons += number && !is_date(cell) ? 1 : 0;
@@ -188,7 +191,7 @@ void refuse_rows_of_words(const Sheet& sheet) {
   throw text::InputError(
       {sheet.file, sheet.line.front()}, "",
       none + (sheet.sheets.size() > 1
-                  ? "; choose the sheet with --sheet: " + text::joined(sheet.sheets, ", ")
+                  ? fmt::format("; choose the sheet with --sheet: {}", text::joined(sheet.sheets, ", "))
                   : "; columns may be separated by comma, semicolon, tab, | or blanks (--separator)"));
 }
 
@@ -197,9 +200,9 @@ void refuse_two_units(const Sheet& sheet, std::size_t row, const std::string& ce
                       std::size_t heading_row, const std::string& heading, const std::string& heading_unit) {
   if (heading_unit.empty() || unit.empty() || unit == heading_unit) return;
   throw text::InputError({sheet.file, sheet.line[row]}, cell,
-                         "the heading \"" + heading + "\" in line " +
-                             std::to_string(sheet.line[heading_row]) + " has the unit " + heading_unit +
-                             ", this cell below it " + unit + ": correct the wrong one of the two cells");
+                         fmt::format("the heading \"{}\" in line {} has the unit {}, this cell below it {}: "
+                                     "correct the wrong one of the two cells",
+                                     heading, std::to_string(sheet.line[heading_row]), heading_unit, unit));
 }
 
 /// The unit of a cell in a line of headings: the cell is the unit, or has the unit; else empty.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/sheet/several_tables.h"
 
+#include <fmt/format.h>
+
 #include <iterator>
 #include <string>
 
@@ -61,11 +63,12 @@ void keep_table(Sheet& sheet, std::optional<std::size_t> number) {
                             " (first line: " + lines + ")";
   if (!number)
     throw text::InputError({sheet.file, sheet.line[first[1]]}, "",
-                           "a second line of headings: the file has " + found +
-                               "; import each with --table 1 and so on, then give all files to the command");
+                           fmt::format("a second line of headings: the file has {}; import each with --table "
+                                       "1 and so on, then give all files to the command",
+                                       found));
   if (*number < 1 || *number > first.size())
     throw text::InputError({sheet.file, 0}, std::to_string(*number),
-                           "the file has no table of this number: it has " + found);
+                           fmt::format("the file has no table of this number: it has {}", found));
   // A title at the top of the file may state the sign of the deviations of all its tables.
   std::size_t data = 0;
   while (data < sheet.rows.size() && !is_row_of_data(sheet, data)) ++data;

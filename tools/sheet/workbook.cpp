@@ -124,12 +124,13 @@ class Reader {
     }
     if (wanted.empty() && !hidden.empty())
       throw text::InputError({file_, 0}, "",
-                             "no visible sheet of this workbook contains a cell; hidden sheets are " +
-                                 text::joined(hidden, ", ") + ": to read one, give --sheet");
+                             fmt::format("no visible sheet of this workbook contains a cell; hidden sheets "
+                                         "are {}: to read one, give --sheet",
+                                         text::joined(hidden, ", ")));
     if (wanted.empty()) throw text::InputError({file_, 0}, "", "no sheet of this workbook contains a cell");
     throw text::InputError(
         {file_, 0}, wanted,
-        "the workbook has no sheet of this name; its sheets are " + text::joined(names, ", "));
+        fmt::format("the workbook has no sheet of this name; its sheets are {}", text::joined(names, ", ")));
   }
 
  private:
@@ -313,7 +314,8 @@ class Reader {
     if (type == "s") {
       const auto index = text::parse_number(value);
       if (!index || *index < 0 || *index >= static_cast<double>(strings_.size()))
-        throw text::InputError({file_, row}, value, "the workbook has no text of this number");
+        throw text::InputError({file_, row}, value,
+                               "a cell refers to a text that the workbook does not contain");
       return strings_[static_cast<std::size_t>(*index)];
     }
     if (type == "b") return value == "0" ? "FALSE" : "TRUE";

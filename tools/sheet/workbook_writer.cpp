@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/sheet/workbook_writer.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 #include <xlsxwriter.h>
 
@@ -36,7 +37,8 @@ constexpr double kWidest = 60, kNarrowest = 9;  // of a column, in letters
 
 void write_sheet(lxw_workbook* workbook, lxw_format* heading, const SheetToWrite& sheet) {
   lxw_worksheet* const out = workbook_add_worksheet(workbook, sheet.name.c_str());
-  if (out == nullptr) throw std::runtime_error("workbook: no sheet of the name \"" + sheet.name + "\"");
+  if (out == nullptr)
+    throw std::runtime_error(fmt::format("workbook: no sheet of the name \"{}\"", sheet.name));
   std::vector<double> width;
   for (std::size_t row = 0; row < sheet.rows.size(); ++row)
     for (std::size_t k = 0; k < sheet.rows[row].size(); ++k) {

@@ -33,7 +33,7 @@ class ImageFolder {
     std::error_code failed;
     const fs::path root(directory_);
     if (!fs::is_directory(root, failed))
-      throw text::InputError("\"" + directory_ + "\": this directory does not exist");
+      throw text::InputError(fmt::format("\"{}\": this directory does not exist", directory_));
     look_at(root);
     for (fs::recursive_directory_iterator it(root, fs::directory_options::skip_permission_denied, failed),
          end;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/simulate/loop.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -102,9 +104,10 @@ class Loop {
   void bring_in() {
     for (bool asked = false; cycle_.mode() != Mode::kActive; ++result_.pre_roll) {
       if (result_.pre_roll == kMostPreRoll)
-        throw text::LimitNotMet(std::string("the firmware did not enter the mode Active; its mode is ") +
-                                name_of(cycle_.mode()) +
-                                "; possible cause: maxslew is too low for the correction");
+        throw text::LimitNotMet(
+            fmt::format("the firmware did not enter the mode Active; its mode is {}; possible cause: maxslew "
+                        "is too low for the correction",
+                        name_of(cycle_.mode())));
       plant_.advance();
       runner_.set_time(path_.time(0));
       const bool ask = cycle_.mode() == Mode::kReady && !asked;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/simulate/path.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -66,7 +68,7 @@ model::Column Path::input(const model::Input& input) const {
   const format::Unit unit = *format::find_unit(written);
   if (!declared || declared->dimension != unit.dimension)
     throw text::InputError({csv_.file, csv_.header_line}, input.name + "[" + written + "]",
-                           "the machine file declares this input in " + input.unit);
+                           fmt::format("the machine file declares this input in {}", input.unit));
   return (unit.factor * read(column) + unit.offset - declared->offset) / declared->factor;
 }
 

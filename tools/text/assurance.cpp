@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/text/assurance.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -10,7 +12,7 @@ namespace vernier::text {
 
 double decisive(double value, std::string_view what) {
   if (!std::isfinite(value))
-    throw std::logic_error(std::string(what) + " is not a finite number: no verdict");
+    throw std::logic_error(fmt::format("{} is not a finite number: no verdict", std::string(what)));
   return value;
 }
 

@@ -151,9 +151,9 @@ std::string sentence_of_run(const model::Measurement& m, const RecordSeries& run
 
 std::string sentence_of_match(const model::Measurement& m, const TimeRunMatch& pair) {
   return fmt::format(
-      "The residuals of runs {} and {} agree sample by sample at the rate {:.3f} (correlation {:.2f}), not "
-      "at the {:.3f} "
-      "that the positions imply (correlation {:.2f}): the two maps are up to {:.0f} samples apart.",
+      "The residuals of runs {} and {} agree sample by sample at the rate {:.3f} (correlation {:.2f}), but "
+      "the positions imply the rate {:.3f} (correlation {:.2f}): the two assignments of samples differ by up "
+      "to {:.0f} samples.",
       m.states.run_names[pair.first_run], m.states.run_names[pair.second_run], std::abs(pair.match.best.rate),
       pair.match.correlation, std::abs(pair.match.implied.rate), pair.match.implied_correlation,
       pair.match.shift);
@@ -194,8 +194,8 @@ void tell(const model::Measurement& m, TimeBaseFinding& finding) {
   for (const TimeClosure& run : finding.closures) {
     if (run.closure.p_value >= kWorthTelling) continue;
     add(fmt::format(
-        "The last {} samples of run {} repeat its first ones (correlation {:.2f}; {:.2f} elsewhere at best), "
-        "before the path closes.",
+        "The last {} samples of run {} repeat its first samples (correlation {:.2f}; at all other lags at "
+        "most {:.2f}), before the path closes.",
         run.closure.rows, m.states.run_names[run.run], run.closure.correlation, run.closure.elsewhere));
   }
   for (const TimeGap& gap : finding.gaps) {
@@ -215,7 +215,7 @@ void conclude(const model::Measurement& m, const TimeBaseOptions& options, TimeB
   finding.why =
       finding.blocks.empty() && finding.matches.empty() && finding.closures.empty()
           ? "No path contains a pose twice in a comparable motion, so the time base cannot be tested."
-          : "All repetitions agree with the positions.";
+          : "All repetitions of the residual agree with the repetitions of the positions.";
 }
 
 }  // namespace

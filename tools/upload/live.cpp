@@ -76,8 +76,9 @@ std::string shares_text(const BoardInfo& info, std::vector<BoardShare> shares) {
 std::string running_text(const BoardTick& tick, const BoardState& state) {
   if (state.image == ImageState::kLost) return "RUNS NOTHING: the confirmed image is lost\n";
   if (state.fingerprint == 0) return "runs nothing\n";
-  return fmt::format("runs {:016x} ({}) for {:.1f} s, {:.0f} % of it in\n", state.fingerprint,
-                     name_of(state.image), tick.time_s - state.since_s, 100 * state.weight);
+  return fmt::format("runs {:016x} ({}) for {:.1f} s, {:.0f} % of the correction is active\n",
+                     state.fingerprint, name_of(state.image), tick.time_s - state.since_s,
+                     100 * state.weight);
 }
 
 }  // namespace

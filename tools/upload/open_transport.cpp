@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/upload/open_transport.h"
 
+#include <fmt/format.h>
 #include <modbus.h>
 #include <netdb.h>
 #include <sys/socket.h>
@@ -49,7 +50,7 @@ class ModbusTransport : public Transport {
     words.fill(0);
     if (modbus_read_input_registers(context_, kMailboxRegister, kMailboxRegisters, words.data()) < 0) fail();
     if (words[0] > 2 * (kMailboxRegisters - 1))
-      throw text::InputError(name_ + ": the board's reply has an impossible length");
+      throw text::InputError(fmt::format("{}: the board's reply has an impossible length", name_));
     std::vector<std::uint8_t> reply(words[0]);
     for (std::size_t i = 0; i < reply.size(); ++i)
       reply[i] = static_cast<std::uint8_t>(i % 2 == 0 ? words[1 + i / 2] >> 8 : words[1 + i / 2] & 0xff);

@@ -2,6 +2,7 @@
 #include "tools/upload/serial_transport.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <termios.h>
 #include <unistd.h>
@@ -35,7 +36,7 @@ speed_t speed_of(std::uint32_t baud) {
     case 921600:
       return B921600;
     default:
-      throw text::InputError("board address: no serial line has " + std::to_string(baud) + " baud");
+      throw text::InputError(fmt::format("board address: no serial line has {} baud", std::to_string(baud)));
   }
 }
 
@@ -94,7 +95,7 @@ class SerialTransport : public Transport {
       const ssize_t got = ready < 0 ? -1 : ::read(line_, &byte, 1);
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) fail(errno);
-      if (got == 0) throw text::InputError(name_ + ": the serial line was closed");
+      if (got == 0) throw text::InputError(fmt::format("{}: the serial line was closed", name_));
       if (reader_.take(byte)) return {reader_.message(), reader_.message() + reader_.size()};
     }
   }

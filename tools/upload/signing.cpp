@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/upload/signing.h"
 
+#include <fmt/format.h>
 #include <sodium.h>
 #include <sys/stat.h>
 
@@ -97,8 +98,8 @@ SigningKey read_secret_key(const std::string& path) {
   std::istringstream text(text::read_file(path));
   struct stat info {};
   if (::stat(path.c_str(), &info) == 0 && (info.st_mode & (S_IRWXG | S_IRWXO)) != 0)
-    throw text::InputError(path +
-                           ": other users may read this secret key: set its permissions with chmod 600");
+    throw text::InputError(
+        fmt::format("{}: other users may read this secret key: set its permissions with chmod 600", path));
   std::string title, line;
   std::getline(text, title);
   std::getline(text, line);
@@ -124,7 +125,7 @@ std::vector<std::uint8_t> make_upload(const std::vector<std::uint8_t>& image, co
                                       const std::string& board) {
   start_sodium();
   if (board.size() >= kBoardNameBytes)
-    throw text::InputError("\"" + board + "\": too long for the name of a board");
+    throw text::InputError(fmt::format("\"{}\": too long for the name of a board", board));
   ImageHeader inside;
   std::memcpy(&inside, image.data(), sizeof(inside));
   UploadHeader header{};

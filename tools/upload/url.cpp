@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/upload/url.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 
 #include "tools/text/error.h"
@@ -45,7 +47,8 @@ BoardUrl parse_url(const std::string& text) {
   std::string rest = colon == std::string::npos ? text : text.substr(colon + 3);
   if (url.scheme == "modbus" || url.scheme == "modbus-tcp") url.scheme = "tcp";
   if (url.scheme != "tcp" && url.scheme != "rtu" && url.scheme != "can" && url.scheme != "serial")
-    throw text::InputError("board address: '" + url.scheme + "' is not one of tcp, rtu, serial and can");
+    throw text::InputError(
+        fmt::format("board address: '{}' is not one of tcp, rtu, serial and can", url.scheme));
   if (const std::size_t question = rest.find('?'); question != std::string::npos) {
     parse_options(rest.substr(question + 1), url);
     rest.resize(question);
@@ -62,7 +65,7 @@ BoardUrl parse_url(const std::string& text) {
   }
   url.place = rest;
   if (url.place.empty())
-    throw text::InputError("board address: '" + text + "' contains no host, device or interface");
+    throw text::InputError(fmt::format("board address: '{}' contains no host, device or interface", text));
   return url;
 }
 

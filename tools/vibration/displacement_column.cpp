@@ -30,7 +30,8 @@ double acceleration_factor(const Signal& signal) {
   const auto unit = format::find_unit(signal.unit);
   if (!unit || unit->dimension != format::Dimension::kAcceleration)
     throw text::InputError(
-        fmt::format("\"{}\": no acceleration (unit g, m/s^2 or mm/s^2), so no displacement: \"{}\"",
+        fmt::format("\"{}\": the signal is no acceleration (unit g, m/s^2 or mm/s^2), so the displacement "
+                    "cannot be computed: \"{}\"",
                     signal.name, signal.unit));
   return unit->factor;
 }

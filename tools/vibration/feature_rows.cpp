@@ -75,7 +75,8 @@ std::vector<double> measured_lengths_um(const format::CsvFile& file, const std::
     throw text::InputError({file.file, file.header_line}, name, "the file has no column of this name");
   const auto unit = format::find_unit(file.columns[*column].unit);
   if (!unit || unit->dimension != format::Dimension::kLength)
-    throw text::InputError({file.file, file.header_line}, name, "is not a length (unit mm, um, m or in)");
+    throw text::InputError({file.file, file.header_line}, name,
+                           "this column is not a length (unit mm, um, m or in)");
   std::vector<double> lengths_um;
   for (std::size_t row = 0; row < file.rows.size(); ++row) {
     const std::string& cell = file.rows[row][*column];
@@ -124,7 +125,8 @@ void add_difference(VibrationRecord& record, const std::string& definition) {
   const Signal& a = signal_named(record, definition.substr(equals + 1, minus - equals - 1));
   const Signal& b = signal_named(record, definition.substr(minus + 1));
   if (a.unit != b.unit)
-    throw text::InputError(fmt::format("\"{}\": a difference of {} and {}", definition, a.unit, b.unit));
+    throw text::InputError(
+        fmt::format("\"{}\": the two signals have different units, {} and {}", definition, a.unit, b.unit));
   Signal difference{definition.substr(0, equals), a.unit, a.value};
   for (std::size_t i = 0; i < record.samples; ++i) difference.value[i] -= b.value[i];
   record.signals.push_back(std::move(difference));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/api.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "tools/import/kinds.h"
@@ -92,7 +94,7 @@ ApiReply Api::put_file(const ApiRequest& request) {
   const std::string name = request.word("name");
   project_.writable(name);
   if (!request.words("new").empty() && std::filesystem::exists(project_.writable(name)))
-    throw text::InputError("\"" + name + "\": a file of this name already exists");
+    throw text::InputError(fmt::format("\"{}\": a file of this name already exists", name));
   if (ApiReply checked = reader_.reply(request); checked.status != 200) return checked;
   project_.save(name, request.body);
   return json_reply({{"name", name}, {"bytes", request.body.size()}});

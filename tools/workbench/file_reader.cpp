@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/file_reader.h"
 
+#include <fmt/format.h>
+
 #include "tools/workbench/files/file_desk.h"
 
 namespace vernier::workbench {
@@ -46,8 +48,10 @@ ApiReply FileReader::reply(const ApiRequest& request) {
     if (reader_->ask(message_of(request), patience_s_, answer) && read_reply(answer, reply)) return reply;
     const std::string how = reader_->end();
     reader_.reset();
-    throw text::InputError("the reading process ended during this request (" + how +
-                           "): a file of the request cannot be read, and nothing was changed");
+    throw text::InputError(
+        fmt::format("the reading process ended during this request ({}): a file of the request cannot be "
+                    "read, and nothing was changed",
+                    how));
   });
 }
 

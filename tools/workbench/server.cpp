@@ -73,7 +73,7 @@ constexpr std::array<Asset, 3> kAssets = {
 std::string new_token() {
   std::array<unsigned char, 32> bytes{};
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw text::InputError("no random numbers for a session");
+    throw text::InputError("the operating system gives no random numbers for the token of a session");
   std::string text;
   for (const unsigned char byte : bytes) {
     text += "0123456789abcdef"[byte >> 4];
@@ -128,17 +128,17 @@ bool WorkbenchServer::Inside::welcome(const httplib::Request& request, httplib::
 WorkbenchServer::Inside::Handled WorkbenchServer::Inside::guard(const httplib::Request& request,
                                                                 httplib::Response& response) const {
   if (!is_ours(request)) {
-    refuse(response, 403, "the request does not come from this page");
+    refuse(response, 403, "the request does not come from the page of the workbench");
     return Handled::Handled;
   }
   if (welcome(request, response)) return Handled::Handled;
   if (!same_secret(cookie(request.get_header_value("Cookie"), cookie_name()), token)) {
-    refuse(response, 401, "open the address that the command printed");
+    refuse(response, 401, "open the page at the address that the command printed");
     return Handled::Handled;
   }
   if (request.method == "GET") return Handled::Unhandled;
   if (!request.has_header("X-Vernier")) {
-    refuse(response, 403, "the request does not come from this page");
+    refuse(response, 403, "the request does not come from the page of the workbench");
     return Handled::Handled;
   }
   // Bodies have a known length and are not compressed: their size is limited.

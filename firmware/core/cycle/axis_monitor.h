@@ -32,8 +32,8 @@ class AxisMonitor {
 
   /// Takes one reading of the axis. `present` = false: the reading is missing. The function counts faults in
   /// `health`. A reading that jumps is a fault only once, because the next readings are compared with the new
-  /// position. `elapsed`: time since the previous call. With the elapsed time, a late tick does not look like
-  /// a jump or a wrong speed. Real-time safe.
+  /// position. `elapsed`: time since the previous call. Because the elapsed time is known, a late
+  /// tick is not detected as a jump or a wrong speed of the axis. Real-time safe.
   Fault take(bool present, const AxisReading& reading, Health& health, TicksQ8 elapsed = kOneTick) noexcept;
 
   bool known() const noexcept { return known_; }

@@ -121,8 +121,8 @@ class History {
     const std::uint64_t count = begun_.load();
     return count > size_ ? count - size_ : 0;
   }
-  /// Reads the value with number `index`. Returns false if this value was not yet written or is already
-  /// overwritten. Not real-time safe.
+  /// Reads the value with number `index`. Returns false if the value `index` was not yet written or
+  /// is already overwritten. Not real-time safe.
   bool read(std::uint64_t index, T& value) const noexcept {
     if (index >= count()) return false;
     const T copy = values_[static_cast<std::uint32_t>(index) & (size_ - 1)].get();
@@ -138,8 +138,8 @@ class History {
   std::unique_ptr<AtomicWords<T>[]> values_;
 };
 
-/// Start values of the equation in one tick. Other threads compute the share of each effect from these
-/// values.
+/// Start values of the error equation in one tick. Other threads compute the share of each effect
+/// from these values.
 struct EquationRecord {
   std::uint32_t programs = 0, reserved = 0;  // programs: HealthRecord::programs of the program to which this
                                              // state belongs

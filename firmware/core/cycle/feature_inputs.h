@@ -47,15 +47,16 @@ bool feature_of(std::string_view name, Feature& feature) noexcept;
 /// (FeatureValues::undefined); or more than `bridged` successive samples were missing and the window is not
 /// yet full again. A window never contains a gap in the samples. A displacement uses a filter
 /// (comp/vibration/displacement.h, exact at 0.18 of the rate) instead of a window. The filter of a
-/// displacement starts at rest and gives no reading for three periods of its corner frequency. After a gap in
-/// the samples it starts again. The displacement is that of the latest sample, with a resolution of 1 nm. In
-/// each tick the displacement filter needs 200 instructions of x86-64.
+/// displacement starts at rest and gives no reading for three periods of its corner frequency.
+/// After a gap in the samples, the filter of a displacement starts again. The displacement is that
+/// of the latest sample, with a resolution of 1 nm. In each tick the displacement filter needs 200
+/// instructions of x86-64.
 class FeatureInputs : public InputReader {
  public:
   /// `source`: reads all inputs that are not features; it must exist longer than this object. `inputs`:
   /// number of inputs of the board, at most kMaxInputs. `tick`: duration of a tick of the firmware. A request
-  /// that cannot be executed (length, resolution, an `of` that is a feature) is refused. The function
-  /// refused() then returns its index. Not real-time safe.
+  /// that cannot be executed (length, resolution, an `of` that is a feature) is refused. After a
+  /// refusal, the function refused() returns the index of the request. Not real-time safe.
   FeatureInputs(InputReader& source, std::uint32_t inputs, std::span<const FeatureRequest> requests,
                 TimeUs tick);
   FeatureInputs(InputReader& source, std::uint32_t inputs, std::initializer_list<FeatureRequest> requests,

@@ -4,7 +4,8 @@
 
 namespace vernier {
 
-/// Counters of the firmware. The counters never decrease; clearing a fault does not change the counters.
+/// Counters of the firmware. The health counters of the firmware never decrease; clearing a fault
+/// does not change these counters.
 struct Health {
   std::uint64_t ticks = 0;
   std::uint64_t active_ticks = 0;

@@ -27,8 +27,8 @@ class ModeControl {
   /// `settled`: true if every correction has reached its target. Real-time safe.
   void after(Fault fault, bool at_zero, bool settled, Health& health) noexcept;
 
-  /// Starts with a fault that was latched before the start of the board. A command clears this fault. Call
-  /// before the first tick. Not real-time safe.
+  /// Starts the state machine with a fault that was latched before the start of the board. A
+  /// command clears this fault. Call before the first tick. Not real-time safe.
   void restore(Fault fault) noexcept {
     if (fault != Fault::kNone) latched_ = fault, mode_ = Mode::kFaulted;
   }

@@ -25,7 +25,8 @@ struct LoadedProgram {
   std::atomic<bool> taken{false};
 
   std::uint8_t* image() noexcept { return reinterpret_cast<std::uint8_t*>(words.get()); }
-  /// Binds the program again from its image. The state of its execution starts again. Not real-time safe.
+  /// Binds the program again from its image. The execution of the program that is bound again
+  /// starts from its initial state. Not real-time safe.
   void start_anew() noexcept;
 };
 struct GiveBack {

@@ -9,9 +9,10 @@
 
 namespace vernier {
 
-/// Limits for overruns of ticks. Overruns beyond a limit are a fault. A single late tick is not a fault,
-/// because a late tick occurs on every system from time to time. If ticks are omitted regularly, the cycle
-/// time is wrong, also if the omitted ticks are distributed evenly.
+/// Limits for overruns of ticks. A number of overruns (ticks that end late) beyond a limit is a
+/// fault. A single late tick is not a fault, because a late tick occurs on every system from time
+/// to time. If ticks are omitted regularly, the cycle time is wrong, also if the omitted ticks are
+/// distributed evenly.
 struct OverrunLimits {
   std::uint32_t in_a_row = 10;
   std::uint32_t lost_share_q16 = 65536 / 20;  // share of the ticks (Q16) that may be omitted permanently

@@ -30,8 +30,9 @@ struct WorkBudget {
 /// milliseconds. The measurement computes sums of products, and reads `memory` in random order (its words are
 /// overwritten). `memory` must be larger than the caches. If `memory` is empty, reading a cache line has no
 /// cost, as on a processor without caches. The best of several measurements is used, because other tasks
-/// interrupted the slower measurements. The function measured_work_budget() returns kAnyWork if the clock
-/// does not move. Call this function before the first tick. Not real-time safe.
+/// interrupted the slower measurements. If the clock does not advance during the measurement,
+/// measured_work_budget() returns kAnyWork (no limit of the work). Call this function before the
+/// first tick. Not real-time safe.
 WorkBudget measured_work_budget(Clock& clock, TimeUs tick, std::span<std::uint32_t> memory = {}) noexcept;
 
 /// Number of words of `memory` that exceeds the caches of usual boards: 16 MB.

@@ -54,7 +54,7 @@ class Gate {
   /// connection. If the table is full, the oldest challenge of the same link is removed. If the table has no
   /// challenge of the same link, the oldest challenge of any link is removed. Not real-time safe.
   ChallengeReply challenge(LinkAccess access, const Caller& from, TimeUs now) noexcept;
-  /// Removes the challenge of a connection that has ended. Not real-time safe.
+  /// Removes the open challenge of a connection that has ended. Not real-time safe.
   void forget(const Caller& from) noexcept;
   /// True if the request asks the board to prove its identity. Every caller may send an identify request.
   static bool is_identify(const std::uint8_t* request, std::uint32_t size) noexcept;

@@ -78,12 +78,14 @@ class Uploader {
   UploadResult confirm();
   /// Ends the trial of an image. The guardian stops the image in its next call. Not real-time safe.
   UploadResult revert();
-  /// Records on the medium that a trial is over. Returns true if the record is written. If the record cannot
-  /// be written, the next call tries again. Until the record is written, a reset of the board gives the same
-  /// result as the present content of the medium. Not real-time safe.
+  /// Records on the medium that a trial is over. Returns true if the record is written. If the
+  /// record that the trial is over cannot be written, the next call tries again. Until the record
+  /// is written, a reset of the board gives the same result as the present content of the medium.
+  /// Not real-time safe.
   bool look_after_store();
-  /// Writes the records of the store again after damage. Returns true if they are written. Call repair() when
-  /// an operator has activated the running image. Not real-time safe.
+  /// Writes the records of the store again after damage. Returns true if the records of the store
+  /// are written. Call repair() when an operator has activated the running image. Not real-time
+  /// safe.
   bool repair();
   /// Reads bytes of the confirmed upload (its header and image) from the medium. The function
   /// read_confirmed() returns kNoReading if the offset is beyond the end of the upload. Not real-time safe.

@@ -561,7 +561,7 @@ void refuse_duplicates(const BoardFile& board) {
     };
     const auto found = std::find_if(used.begin(), used.end(), same);
     if (found != used.end())
-      source.fail("the device of " + (*found)->where + " is the same: one device can have only one use");
+      source.fail("this device is already used by " + (*found)->where + "; one device can have only one use");
     used.push_back(&source);
   };
   for (const AxisEntry& axis : board.axes)

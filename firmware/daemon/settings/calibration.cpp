@@ -98,7 +98,7 @@ std::vector<CalibrationPoint> read_calibration_points(const std::string& path, b
 void write_calibration(const std::string& path, const Calibration& c, const std::string& axis) {
   const std::string content =
       "# Output of axis " + axis + ", " + std::to_string(c.points) + " points, rms of the residual " +
-      text("%.4g", c.residual) + ", worst " + text("%.4g", c.worst) + " um (arcsec of a rotary axis).\n" +
+      text("%.4g", c.residual) + ", worst " + text("%.4g", c.worst) + " um (rotary axis: arcsec).\n" +
       "span = " + text("%.9g", c.span) + "  # +- " + text("%.3g", c.span_std) + "\n" +
       "zero = " + text("%.0f", std::round(c.zero)) + "  # " + text("%.3f", c.zero) + " +- " +
       text("%.3g", c.zero_std) + "\n" + "polarity = \"" + (c.inverted ? "inverted" : "normal") + "\"\n";

@@ -66,7 +66,7 @@ PositionScale position_scale(const SignalSource& source, bool rotary) {
   scale.counts = kCounts;
   scale.inverted = scale_um < 0;
   if (!(std::abs(scale_um) <= kMostScale_um))
-    source.fail_at("scale", "scale must be between -1000 and 1000 um of a count");
+    source.fail_at("scale", "scale must be between -1000 and 1000 um per count");
   scale.span = std::llround(std::abs(scale_um) * kMmPerUm * unit * static_cast<double>(kCounts));
   if (scale.span < 1) source.fail_at("scale", "scale must not be zero");
   if (!(std::abs(offset) <= kMostOffset)) source.fail_at("offset", "offset must be between -1e6 and 1e6");

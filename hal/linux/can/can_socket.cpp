@@ -37,7 +37,7 @@ int open_local(const std::string& path, const std::vector<std::uint32_t>& ids, s
   const std::vector<can_filter> filters = filters_of(ids);
   const std::size_t bytes = filters.size() * sizeof(can_filter);
   if (::send(fd, filters.data(), bytes, MSG_NOSIGNAL) != static_cast<ssize_t>(bytes))
-    return can_failed(path, "the link does not accept filters", fd, error);
+    return can_failed(path, "the CAN interface does not accept filters", fd, error);
   return fd;
 }
 

@@ -8,8 +8,8 @@
 
 namespace vernier {
 
-/// The sync frame of a CAN bus (SYNC of CiA 301, identifier 0x80). Any frame with this identifier is a sync
-/// signal.
+/// The sync frame of a CAN bus (SYNC of CiA 301, identifier 0x80). Any CAN frame with the
+/// identifier `id` is a sync signal.
 class CanSync : public TickSync {
  public:
   /// `interface`: for example "can0"; `id`: 11 bits, or 29 bits if above 0x7ff. If the socket cannot be

@@ -42,8 +42,8 @@ struct CanopenCounts {
   std::uint16_t last_emergency = 0;
 };
 
-/// State machine of one CiA 402 drive and of the offset that the board sends to it. The class itself uses no
-/// device.
+/// State machine of one CiA 402 drive and of the offset that the board sends to it. The class
+/// CanopenDrive processes frames and uses no device itself.
 ///
 /// The drive uses an offset from the next SYNC on (RPDO transmission type 0 to 240). The board also receives
 /// its own frames in their order on the bus. The board therefore detects if a SYNC comes before an offset
@@ -60,7 +60,8 @@ class CanopenDrive {
  public:
   explicit CanopenDrive(const CanopenSettings& settings) noexcept : settings_(settings) {}
 
-  /// Takes a frame from the bus. The frame may also be one that the board has sent. Real-time safe.
+  /// Takes a frame from the bus. The received frame may also be a frame that the board itself has
+  /// sent. Real-time safe.
   void take(const can_frame& frame, InstantNs now) noexcept;
 
   struct Step {
@@ -69,20 +70,21 @@ class CanopenDrive {
     std::int32_t offset = 0;
   };
   /// Evaluates the state of the drive, and determines the offset for this tick. `wanted`: required offset in
-  /// counts of the object. If the CAN bus accepted the frame, the caller must call sent(). Real-time safe.
+  /// counts of the object. If the CAN bus accepted the frame with the offset, the caller must call
+  /// sent(). Real-time safe.
   Step step(std::int64_t wanted, InstantNs now) noexcept;
   void sent(std::int32_t offset, InstantNs now) noexcept {
     sent_ = offset, pending_ = true, pending_since_ = now;
     if (doubt_ == Doubt::kRepeat) doubt_ = Doubt::kOnItsWay;
     ++counts_.offsets;
   }
-  /// Call this function if the CAN bus did not accept the frame. Real-time safe.
+  /// Call this function if the CAN bus did not accept the frame with the offset. Real-time safe.
   void not_sent() noexcept { ++counts_.refused; }
   /// Sets the offset that the drive has from an earlier run. Not real-time safe.
   void begin_with(std::int32_t offset) noexcept { sent_ = on_bus_ = applied_ = offset; }
 
-  /// Reads the newest position actual value that came since the last call of begin_tick(). Returns false if
-  /// no value came. Real-time safe.
+  /// Reads the newest position actual value that came since the last call of begin_tick(). Returns
+  /// false if no position actual value came from the drive. Real-time safe.
   bool position(std::int32_t& value) const noexcept {
     if (fresh_) value = position_;
     return fresh_;
@@ -91,7 +93,8 @@ class CanopenDrive {
 
   /// Returns the offset that the drive has, or will have with the next SYNC. Real-time safe.
   std::int32_t offset() const noexcept { return sent_; }
-  /// True if the last step was sent without any limitation. Real-time safe.
+  /// True if the last change of the offset was sent to the drive without any limitation. Real-time
+  /// safe.
   bool follows() const noexcept { return follows_; }
   /// Returns the name of the missing signal ("SYNC", "the heartbeat", ...), or null if no signal is missing.
   /// Not real-time safe.
@@ -116,8 +119,9 @@ class CanopenDrive {
     bool within(InstantNs now, InstantNs time) const noexcept { return known && now - at <= time; }
   };
 
-  /// State of the question whether the drive has the newest offset. An offset for a drive that did not accept
-  /// offsets is sent once more, is received back, and is used at a SYNC to which the drive answers.
+  /// State that shows whether the drive has the newest offset. An offset for a drive that did not
+  /// accept offsets is sent once more, is received back, and is used at a SYNC to which the drive
+  /// answers.
   enum class Doubt : std::uint8_t { kNone, kRepeat, kOnItsWay, kInDrive };
 
   void take_heartbeat(const can_frame& frame, InstantNs now) noexcept;

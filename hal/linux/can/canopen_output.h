@@ -17,8 +17,9 @@ struct CanopenPlace {
   bool test_pdos = true;  // true: the PDO settings of the drive are compared by SDO; false: they are unknown
 };
 
-/// The correction of one axis as the position offset of a CiA 402 drive. The tick sends it by PDO, without a
-/// thread and without waiting. The rules for the offset are those of CanopenDrive.
+/// The correction of one axis as the position offset of a CiA 402 drive. The tick sends the
+/// position offset by PDO, without a thread and without waiting. The rules for the offset are those
+/// of CanopenDrive.
 class CanopenOutput : public OutputDevice {
  public:
   /// Returns null with `error` set if the CAN bus does not exist, or if the PDOs of the drive differ from
@@ -36,14 +37,14 @@ class CanopenOutput : public OutputDevice {
   /// The function write_correction() returns kRefused if the drive does not accept an offset (no SYNC, bus
   /// off), or if a loss must be reported to the tick. Real-time safe.
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
-  /// Returns the correction that the drive has if the drive does not follow the required correction.
-  /// Real-time safe.
+  /// If the drive does not follow the required correction, returns the correction that the drive
+  /// has at present. Real-time safe.
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
 
-  /// Returns false if another node sends the RPDO. lock() listens to the bus for some SYNC periods. Not
-  /// real-time safe.
+  /// Returns false if another node of the CAN bus sends the RPDO of the drive. lock() listens to
+  /// the bus for some SYNC periods. Not real-time safe.
   bool lock() noexcept override;
-  /// Reads the offset that the drive has, by SDO. Not real-time safe.
+  /// Reads the present position offset of the drive by SDO. Not real-time safe.
   HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept override;
   std::string attempt(std::uint32_t axis) override;
   std::string trial() const override;

@@ -97,15 +97,16 @@ std::string CanopenSdo::check_mapping(const Pdo& pdo) {
       error = std::string(pdo.name) + " " + hex(at) + ": the identifier " + hex(pdo.id, 3) +
               " has 29 bits, but 11 bits are required";
     } else if (found) {
-      error = std::string("two active ") + pdo.name + "s of the drive have the identifier " + hex(pdo.id, 3);
+      error = std::string("the drive has two active ") + pdo.name + "s with the identifier " + hex(pdo.id, 3);
     } else {
       error = check_contents(pdo, at);
       found = true;
     }
     if (!error.empty()) return error;
   }
-  return found ? elsewhere
-               : std::string("no active ") + pdo.name + " of the drive has the identifier " + hex(pdo.id, 3);
+  return found
+             ? elsewhere
+             : std::string("the drive has no active ") + pdo.name + " with the identifier " + hex(pdo.id, 3);
 }
 
 std::string CanopenSdo::check_contents(const Pdo& pdo, std::uint16_t at) {
@@ -140,7 +141,7 @@ std::string CanopenSdo::check_other(const Pdo& pdo, std::uint16_t at) {
     for (const std::uint32_t own : pdo.mapped)
       if (value >> 8 == own >> 8)
         return std::string(pdo.name) + " " + hex(map) + ": object " + hex(value, 8) +
-               " is mapped there too; only the " + pdo.name + " of the board may write it";
+               " is also mapped in this PDO; only the PDO of the board may contain this object";
   }
   return "";
 }

@@ -27,7 +27,8 @@ std::string find_iio_device(const std::string& root, const std::string& device, 
   for (const auto& entry : std::filesystem::directory_iterator(root, unreadable)) {
     if (first_line(entry.path() / "name") != device && first_line(entry.path() / "label") != device) continue;
     if (!found.empty()) {
-      error = root + ": more than one IIO device " + device + "; give a label or a path";
+      error = root + ": several IIO devices have the name " + device +
+              "; give the label or the path of the device";
       return {};
     }
     found = entry.path().string();

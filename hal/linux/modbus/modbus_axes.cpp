@@ -94,7 +94,7 @@ std::string ModbusAxes::account() const {
   char text[160];
   std::snprintf(
       text, sizeof text,
-      "positions of modbus register %d: %llu requests, %llu failed, %llu with the sequence number of before",
+      "positions of modbus register %d: %llu requests, %llu failed, %llu with an unchanged sequence number",
       settings_.first(), static_cast<unsigned long long>(reads_.load()),
       static_cast<unsigned long long>(failed_.load()), static_cast<unsigned long long>(repeated_.load()));
   return text;

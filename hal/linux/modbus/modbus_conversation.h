@@ -54,8 +54,9 @@ class ModbusConversation {
   std::uint32_t waiting() const noexcept { return out_size_ - sent_; }
   void sent(std::uint32_t bytes) noexcept;
 
-  /// True if the peer sent a wrong length, is too slow, or does not read its reply. A TCP connection must
-  /// then be closed. On a serial line, the conversation continues and the received bytes are discarded.
+  /// True if the peer sent a wrong length, is too slow, or does not read its reply. A TCP
+  /// connection with a failed conversation must be closed. After a failure on a serial line, the
+  /// conversation continues and the received bytes are discarded.
   bool broken(InstantNs now) noexcept;
   /// True if the client has not yet read its reply.
   bool has_reply() const noexcept { return waiting() > 0; }

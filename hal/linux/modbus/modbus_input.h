@@ -35,7 +35,8 @@ class ModbusLine {
   /// the answer to the next request. Not real-time safe.
   bool read(int unit, Registers kind, int address, int count, std::uint16_t* values) noexcept;
   /// Writes `count` holding registers (1 to 123) in one request. The function write() returns false for the
-  /// same reasons as in read(). The peer may nevertheless have received the values. Not real-time safe.
+  /// same reasons as in read(). If write() returns false, the peer may nevertheless have received
+  /// the values. Not real-time safe.
   bool write(int unit, int address, int count, const std::uint16_t* values) noexcept;
   /// Returns the number of answers that did not belong to their request or were damaged. Only the thread that
   /// reads may call wrong_answers(). Not real-time safe.

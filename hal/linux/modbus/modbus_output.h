@@ -74,7 +74,8 @@ class ModbusOutput : public OutputDevice {
   HalFault write_correction(std::uint32_t axis, AxisTravel correction) noexcept override;
   AxisTravel within_range(std::uint32_t axis, AxisTravel correction) const noexcept override;
 
-  /// Returns true: open() has tested that no other device changes the sequence number.
+  /// Always returns true, because open() has already tested that no other device changes the
+  /// sequence number of the block.
   bool lock() noexcept override { return true; }
   /// Returns, before the first write, the value that the block had at open(), limited to the range of the
   /// axis.
@@ -97,8 +98,8 @@ class ModbusOutput : public OutputDevice {
     std::atomic<std::int32_t> wanted{0};  // number for the register
     std::atomic<bool> valid{false}, refuse{false};
     std::int32_t sent = 0;
-    /// True if `sent` began at a value of an earlier process and is not yet zero. The thread clears the flag
-    /// left_over.
+    /// True if `sent` began at a value of an earlier process and is not yet zero. The writing
+    /// thread clears the flag left_over.
     std::atomic<bool> left_over{false};
     std::int64_t most_per_period = 1;
     std::uint64_t held_at_end = 0;

@@ -158,6 +158,41 @@ TEST_F(OutputFolder, FileInItsPlaceIsAnError) {
   EXPECT_EQ(read_file(in("file")), "old");
 }
 
+/// A template of `new` with the column on was refused by fit without a remedy.
+TEST_F(OutputFolder, NewMachineForTouchesHasAnArtefactAndItsAbsenceIsNamed) {
+  EXPECT_EQ(run("vernier new gantry -o bed.xml --measurements bed.csv --reading on"), 0) << said();
+  EXPECT_NE(read_file(in("bed.xml")).find("<artefact name=\"bed\" type=\"plane\"/>"), std::string::npos);
+  write_file(in("touched.csv"), "X[mm],on,u[um]\n0,bed,1\n10,bed,1\n");
+  EXPECT_EQ(run("vernier compare m.xml touched.csv"), 1);
+  EXPECT_NE(
+      said().find("the machine file has no <artefact>; state what the tool point touched, such as <artefact "
+                  "name=\"bed\" type=\"plane\"/>"),
+      std::string::npos)
+      << said();
+  EXPECT_EQ(run("vernier new gantry -o plain.xml"), 0) << said();
+  EXPECT_EQ(read_file(in("plain.xml")).find("<artefact"), std::string::npos);
+}
+
+/// The component applies what screw tables cannot express, so that a machine with squareness has files too.
+TEST_F(OutputFolder, LinuxCncHasTheComponentWhereScrewTablesCannotExpressTheMachine) {
+  write_file(in("square.xml"), R"xml(<machine name="m"><variables>
+  <static><k value="0.0001" nominal="0"/></static>
+  <machineaxes><X rotary="false" min="0" max="600" maxcorrection="0.2" maxslew="5"/>
+  <Y rotary="false" min="0" max="600" maxcorrection="0.2" maxslew="5"/></machineaxes></variables>
+  <transforms><sixdof n="1" X="X+k*Y" Y="Y"/></transforms></machine>)xml");
+  EXPECT_EQ(run("vernier export linuxcnc square.xml -o out"), 0) << said();
+  EXPECT_NE(said().find("note: no screw-compensation file: a screw-compensation file cannot express"),
+            std::string::npos)
+      << said();
+  EXPECT_NE(said().find("depends on the position of Y: up to 60 um"), std::string::npos) << said();
+  EXPECT_TRUE(fs::exists(in("out/vernier.hal")) && fs::exists(in("out/image/machine.vimg")));
+  EXPECT_FALSE(fs::exists(in("out/X.comp")));
+  EXPECT_EQ(run("vernier export linuxcnc square.xml -o out2 --leave-out"), 0) << said();
+  EXPECT_TRUE(fs::exists(in("out2/X.comp")) && fs::exists(in("out2/vernier.hal")));
+  EXPECT_EQ(run("vernier export linuxcnc square.xml -o x.comp --axis X"), 1) << said();
+  EXPECT_FALSE(fs::exists(in("x.comp")));
+}
+
 using Instruments = OutputFolder;
 
 /// x y z of a tracker whose frame is turned by 35 degrees about z and moved, 0.1 um; k = 0.0001 in X.

@@ -45,7 +45,7 @@ TEST(Nearest, ATelescopePointsWhereItIsTold) {
   const TestMachine test = mount(-40, 70, 0);
   // THEN two axes are corrected, and nothing is left but what the bound admits
   EXPECT_EQ(test.compiled.program.outputs.size(), 2u);
-  EXPECT_TRUE(says(test.compiled, "in directions that depend on the pose"));
+  EXPECT_TRUE(says(test.compiled, "move the tool point depend on the pose"));
   EXPECT_FALSE(says(test.compiled, "the correction is reduced"));
   const LeftOver left = left_over(test, 20000, kSeed);
   const double bound = largest_bound_um(test.compiled);

@@ -54,8 +54,7 @@ TEST(Compile, RefusesInOneLineWithTheReason) {
                   "can exceed 1e100");
   expect_one_line(refusal("BY*dirY", "BY*atan2(Y-5,X-5)"), "atan2", "180 deg");
   expect_one_line(refusal("lag(T_column-20,600)", "lag(T_column-20,100+Y)"), "lag", "time constant");
-  expect_one_line(refusal("Z=\"lYz\"", "Z=\"abs(X-100)\""), "X",
-                  "direction of motion that changes in a step");
+  expect_one_line(refusal("Z=\"lYz\"", "Z=\"abs(X-100)\""), "X", "direction of motion changes in a step");
 }
 
 TEST(Compile, TakesRunAndNormalAsZeroWithANote) {

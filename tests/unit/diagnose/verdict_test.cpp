@@ -388,6 +388,23 @@ TEST(Verdict, ExcludedCheckRowsCountUpToTheLimitOfAnOutlier) {
   EXPECT_TRUE(is_worse_on_check_rows(rows, before, rows, after, thresholds));
 }
 
+TEST(Verdict, WithoutUAndRepeatsNothingStatesTheNoise) {
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  for (const bool with_u : {true, false}) {
+    std::mt19937_64 random(kSeed);
+    std::normal_distribution<double> noise(0, 0.1);
+    std::string text = with_u ? "X[mm],x[mm],u[mm]\n" : "X[mm],x[mm]\n";
+    for (int i = 0; i < 60; ++i)
+      text += fmt::format("{},{:.6f}{}\n", 8.3 * i, 8.3 * i + noise(random), with_u ? ",0.1" : "");
+
+    const Diagnosis answer = diagnose::diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+
+    EXPECT_EQ(answer.verdict, Verdict::kConsistent) << "seed " << kSeed << ": " << answer.explanation;
+    EXPECT_EQ(answer.explanation.find("The residual is noise") == 0, with_u) << answer.explanation;
+    EXPECT_EQ(answer.explanation.find("have no u and no repeats") == std::string::npos, with_u);
+  }
+}
+
 TEST(Verdict, ChanceOfSuccessiveRowsIsThatOfTheRunsTest) {
   // Two of four rows: three of the six pairs are neighbours.
   EXPECT_NEAR(std::exp(log_p_of_groups(4, 2, 1)), 0.5, 1e-12);

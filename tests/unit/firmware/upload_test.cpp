@@ -644,7 +644,7 @@ TEST_F(Upload, ImageThatIsTooMuchWorkForTheBoardIsRefusedWithThatReason) {
   EXPECT_EQ(send({work}).fault, UploadFault::kNone);
   EXPECT_EQ(send({work - 1}).fault, UploadFault::kTooMuchWork);
   EXPECT_STREQ(describe(send({1})),
-               "the image needs more work than this board can do in its share of a tick");
+               "the image needs more operations in each tick than this board can execute");
 }
 
 /// A look-up in 2048 uneven pieces.

@@ -258,6 +258,25 @@ TEST(Fit, ReproducesThePublishedBaseOfRealDataElsewhere) {
     expect_published(folder, real);
 }
 
+/// Distances from one pose to six others were repeats, with a noise of half a metre; so were two stations.
+TEST(Statistics, DistancesToOtherPosesAndOtherSetUpsAreNoRepeats) {
+  const Machine machine = parse_machine(
+      R"(<machine name="m"><variables><machineaxes><X min="0" max="500"/></machineaxes></variables>
+         <transforms><sixdof X="X"/></transforms></machine>)",
+      "m.xml");
+  std::string to_others = "Point,X[mm],distance[mm],from\n", same = to_others;
+  for (int i = 1; i <= 7; ++i) {
+    to_others += fmt::format("P{},{},,\nA{},0,{},P{}\n", i, 60 * i, i, 60 * i, i);
+    same += fmt::format("P{},60,,\nA{},0,{},P{}\n", i, i, 60 + 0.001 * (i % 2), i);
+  }
+  EXPECT_FALSE(noise_um(parse_measurement(to_others, "m.csv", machine)).has_value());
+  EXPECT_NEAR(*noise_um(parse_measurement(same, "m.csv", machine)), 0.53, 0.01);
+  std::string stations = "X[mm],x[mm],setup\n";
+  for (int i = 0; i < 8; ++i)
+    stations += fmt::format("{},{},a\n{},{},b\n", 60 * i, 60 * i, 60 * i, 900 + 60 * i);
+  EXPECT_FALSE(noise_um(parse_measurement(stations, "m.csv", machine)).has_value());
+}
+
 TEST(Statistics, NoiseComesFromUThenFromRepeatsThenNotAtAll) {
   const Machine machine = line_machine("<a value=\"0\"/>", "X+a");
   EXPECT_NEAR(*noise_um(parse_measurement("X[mm],x[mm],u[um]\n0,0,3\n1,0,4\n", "m.csv", machine)),

@@ -248,7 +248,7 @@ const Case kCases[] = {
     {"Colons", "X[mm]:x[mm]\n1:2.5\n2:3.5\n", "refused: s.csv:1: \":\": a colon cannot separate columns"},
     {"SmallNumbersHaveNoExponent", "X [mm];Abw. X [µm]\n0;0,6\n1;-1000\n", "X[mm],x[mm]\n0,0.0006\n1,0\n"},
     {"ShortRowsOfBlanks", "X[mm] Y[mm] x[mm]\n0 1 2\n9 10\n",
-     "refused: s.csv:3: \"9 10 \": 2 cells, the headings in line 1 are 3"},
+     "refused: s.csv:3: \"9 10 \": this row has 2 cells, but line 1 has 3 headings"},
     {"UnitsInTheReadingsBehindADecimalComma", "X[mm];x[mm]\n1;0,1 mm\n100;100,002 mm\n",
      "refused: s.csv:2: \"0,1 mm\": a number with the unit mm, for x"},
     {"UnfilledTemplate", "X[mm],dirX,x[mm],y[mm],run\n0,1,,,a\n9,-1,,,a\n",
@@ -494,7 +494,8 @@ TEST(SheetWish, AConstantMayHaveADecimalComma) {
 TEST(SheetNote, ASecondColumnOfTheSameNameStatesHowToReadIt) {
   const SheetReading reading = read_as_sheet("X [mm];x [mm];x [mm]\n0;1;2\n9;10;11\n", "s.csv", SheetWords());
   EXPECT_EQ(reading.columns[2].why,
-            "column 2 (\"x [mm]\") is x already; to read this one: --leave 2, or another name: --column "
+            "column 2 (\"x [mm]\") is already read as x; to read this column instead: --leave 2, or another "
+            "name: --column "
             "\"NAME[unit]=3\"");
   SheetWords words;
   words.left = {"2"};

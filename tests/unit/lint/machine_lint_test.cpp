@@ -57,11 +57,12 @@ TEST(MachineLint, EveryErrorIsSaidAtOnce) {
   some_line_has(lines,
                 "m.xml:11: error: \"maxcorection\": unknown attribute of <X> -- did you mean maxcorrection?");
   some_line_has(lines, "m.xml:13: warning: \"Q\": no transform uses this axis");
-  some_line_has(lines, "m.xml:13: warning: \"Q\": a travel of 0.4 mm -- metres or inches?");
+  some_line_has(lines, "m.xml:13: warning: \"Q\": a travel of 0.4 mm -- is the travel in metres or inches?");
   some_line_has(lines, "m.xml:14: warning: \"B\": the axis has no rotary=\"true\"");
   some_line_has(lines, "m.xml:17: error: \"Xm\": the machine has no axis of this name");
   some_line_has(lines, "m.xml:18: error: \"50\": stations must increase");
-  some_line_has(lines, "m.xml:18: warning: \"X\": fit frees column rZ, which no transform uses");
+  some_line_has(lines,
+                "m.xml:18: warning: \"X\": the attribute fit frees the column rZ, which no transform uses");
   some_line_has(lines,
                 "m.xml:21: error: \"ofset\": unknown name, in X=\"X+lXx+ofset+len\" -- did you mean offset?");
   some_line_has(lines, "m.xml:21: error: ");

@@ -75,6 +75,19 @@ TEST(FileSetUps, OneFileStatedSetUpsAndCheckFilesStayAsTheyAre) {
   EXPECT_NE(set_ups({labelled, {"two.csv", "X[mm],x[mm],run\n1,1,q\n"}}).text, kMachine);
 }
 
+TEST(FileSetUps, TwoFilesThatStateDifferentSetUpsHaveABaseShiftForEach) {
+  const File one = {"one.csv", "X[mm],x[mm],setup\n1,1,s1\n"};
+  const SetUpsOfFiles own = set_ups({one,
+                                     {"two.csv", "X[mm],x[mm],setup\n1,1,s2\n2,2,s3\n"},
+                                     {"three.csv", "X[mm],x[mm],setup\n1,1,s1\n"}});
+  const Machine machine = parse_machine(own.text, "m.xml");
+  ASSERT_EQ(machine.base_shifts.size(), 3U);
+  EXPECT_EQ(machine.base_shifts[*base_shift_of(machine, "s2")].run, "s2");
+  EXPECT_EQ(machine.base_shifts[*base_shift_of(machine, "s3")].run, "s3");
+  EXPECT_FALSE(machine.base_shifts[*base_shift_of(machine, "s1")].run);
+  EXPECT_EQ(own.notes.size(), 2U);
+}
+
 TEST(FileSetUps, HiddenBaseShiftStaysTheOnlyOne) {
   std::string hidden = kMachine;
   hidden.replace(hidden.find("X=\"7\""), 5, "X=\"7\" Hide=\"true\"");

@@ -58,9 +58,9 @@ TEST(MeasuredPart, NamesFileLineAndWordOfWhatIsWrong) {
   EXPECT_NE(message_of("sx[mm],sy[mm],sz[mm],defect[mm]\n1,2,3,oops\n").find("cmm.csv:2: \"oops\""),
             std::string::npos);
   // 30 mm above the part, in the middle of it, at the end of the world.
-  EXPECT_NE(message_of("sx[mm],sy[mm],sz[mm],defect[mm]\n-9,2,60,0\n").find("no point of the part"),
+  EXPECT_NE(message_of("sx[mm],sy[mm],sz[mm],defect[mm]\n-9,2,60,0\n").find("not on the part"),
             std::string::npos);
-  EXPECT_NE(message_of("sx[mm],sy[mm],sz[mm],defect[mm]\n60,20,11,0\n").find("no point of the part"),
+  EXPECT_NE(message_of("sx[mm],sy[mm],sz[mm],defect[mm]\n60,20,11,0\n").find("not on the part"),
             std::string::npos);
   EXPECT_NE(message_of("sx[mm],sy[mm],sz[mm],defect[mm]\n1e9,0,11,0\n").find("this point is not on the part"),
             std::string::npos);

@@ -134,7 +134,7 @@ TEST(PositioningTest, WrongRequestsAreRefused) {
   EXPECT_THAT(message(of("Z")), testing::HasSubstr("no axis of this name"));
   PositioningTestOptions options = of("X");
   options.from = 500, options.to = 400;
-  EXPECT_THAT(message(options), testing::HasSubstr("no travel is left"));
+  EXPECT_THAT(message(options), testing::HasSubstr("leaves no travel"));
   options.from = 0, options.to = 600;
   EXPECT_THAT(message(options), testing::HasSubstr("from -6 to 606, which is outside its range"));
   options = of("X");

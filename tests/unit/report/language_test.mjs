@@ -34,7 +34,15 @@ try {
   if (language === 'de') {
     for (const one of new Set(texts)) if (kEnglish.test(one)) faults.push(`English: ${one}`);
     if (path.endsWith('positioning.html') && !texts.some((one) => /^[−-]?\d+,\d+$/.test(one))) faults.push('no number has a comma');
-    for (const one of new Set(texts)) if (/^[−-]?\d+\.\d+$/.test(one)) faults.push(`point: ${one}`);
+    for (const one of new Set(texts)) if (/^[−-]?\d+\.\d+( [%°µ]m?)?$/.test(one)) faults.push(`point: ${one}`);
+    // Of an axis in values: no separator of thousands, which is the decimal sign of the reader.
+    const labels = await value(`[...document.querySelectorAll('.chart')].flatMap((chart) => {
+      const { option } = chart.options();
+      return [option.xAxis, option.yAxis].flat().filter((axis) => axis && axis.type !== 'category' && !axis.data)
+        .map((axis) => [2500, 2.5].map((at) => axis.axisLabel?.formatter?.(at, 0) ?? 'its own').join(' '));
+    })`);
+    if (path.endsWith('positioning.html') && !labels.includes('2500 2,5')) faults.push(`labels of the axes: ${labels}`);
+    for (const one of labels) if (/its own|\d\.\d|\d,\d{3}/.test(one)) faults.push(`label of an axis: ${one}`);
   }
 } finally {
   await page.close();

@@ -63,6 +63,10 @@ TEST(SafetySheet, PassesAMachineOfSmallErrors) {
   ASSERT_EQ(sheet.findings.size(), kSafetyRuleCount - 1);                     // `bound` is the image's
   EXPECT_FALSE(finding(sheet, SafetyRule::kUncertainty).value.has_value());   // never fitted: not known
   EXPECT_NEAR(*finding(sheet, SafetyRule::kMaxCorrection).value, 0.4, 0.02);  // 400 mm * 1e-4 of 0.1 mm
+  const std::vector<std::string> unknown = sheet.not_known();
+  for (const char* rule : {"uncertainty", "measured-range", "check-rows"})
+    EXPECT_NE(std::find(unknown.begin(), unknown.end(), rule), unknown.end()) << rule;
+  EXPECT_EQ(std::find(unknown.begin(), unknown.end(), "max-correction"), unknown.end());
 }
 
 TEST(SafetySheet, RefusesAbsurdAnglesAndNamesThem) {

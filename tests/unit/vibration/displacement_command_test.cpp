@@ -204,7 +204,7 @@ TEST(DisplacementColumn, RefusesWhatMakesNone) {
   refused(record + rows + "--cutoff fit --against roof=d ", "\"roof\"");
   refused(record + rows + "--cutoff fit --against table=t ", "\"t\"");
   refused(record + "--rows " + kFolder + "word.csv --cutoff fit --against table=d ", "word.csv:3: \"wide\"");
-  refused(kFolder + "record.csv --features RMS --corner 1 ", "go with --features DISPLACEMENT");
+  refused(kFolder + "record.csv --features RMS --corner 1 ", "require --features DISPLACEMENT");
   EXPECT_FALSE(std::filesystem::exists(kFolder + "never.csv"));
 }
 

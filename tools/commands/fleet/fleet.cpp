@@ -48,9 +48,9 @@ void trust_board(registry::FleetMachine& machine) {
         "--trust reads name and key from the board: give the address of the board with --url");
   upload::Client board(upload::open_transport(upload::parse_url(machine.url)));
   if (board.info().board.empty())
-    throw text::LimitNotMet(
-        machine.url +
-        ": this board has no name, and the registry was not changed; set name in the board file");
+    throw text::LimitNotMet(fmt::format(
+        "{}: this board has no name, and the registry was not changed; set name in the board file",
+        machine.url));
   machine.board = board.info().board;
   const auto key = board.proved_key();
   machine.board_key = key ? upload::board_key_text(*key) : "";
@@ -79,8 +79,10 @@ void enter_board(const AddArguments& arguments, registry::FleetMachine& machine)
 void refuse_known_key(const registry::FleetMachine& machine, const std::vector<registry::FleetMachine>& all) {
   for (const registry::FleetMachine& other : all)
     if (!machine.board_key.empty() && other.name != machine.name && other.board_key == machine.board_key)
-      throw text::LimitNotMet("this board has the key of the machine " + other.name +
-                              ": one board cannot belong to two machines, and the registry was not changed");
+      throw text::LimitNotMet(
+          fmt::format("this board has the key of the machine {}: one board cannot belong to two machines, "
+                      "and the registry was not changed",
+                      other.name));
 }
 
 void run_add(const AddArguments& arguments) {
@@ -187,7 +189,8 @@ std::string live_line(const registry::LiveState& one, const registry::LiveAge& a
   std::string line =
       fmt::format("{:<20} {:<8} {:<32} {:<17} {} samples", one.machine, word, said, one.image, one.samples);
   if (one.received_us != 0) line += fmt::format(", the last {:.0f} s ago", age.age_s);
-  if (one.historical) line += ", which had waited in the gateway's store since " + text::utc_text(one.at_us);
+  if (one.historical)
+    line += fmt::format(", which had waited in the gateway's store since {}", text::utc_text(one.at_us));
   if (age.clock_off)
     line += fmt::format("; the clock of gateway {} has an error of {:+.0f} s", one.gateway, age.clock_s);
   return line;
@@ -314,13 +317,14 @@ void add_machine_kinds(CLI::App& fleet) {
   command = fleet.add_subcommand("list", "machines, and the calibration that was last recorded for each");
   command->add_option("MACHINE", list->machine, "only this one");
   add_registry(*command, list->registry);
-  command->add_option("--json", list->json, "result for programs; - for standard output");
+  command->add_option("--json", list->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([list] { run_list(*list); });
 
   const auto status = std::make_shared<ListArguments>();
   command = fleet.add_subcommand(
       "status", "newest state of each machine: online, stale or away; mode, fault, correction image");
-  command->add_option("MACHINE", status->machine, "only this machine, with all values");
+  command->add_option("MACHINE", status->machine, "show only this machine, with all its values");
   add_registry(*command, status->registry);
   command
       ->add_option("--stale", status->stale_s,
@@ -328,7 +332,8 @@ void add_machine_kinds(CLI::App& fleet) {
                    "online; a multiple of the gateway's period_s")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str();
-  command->add_option("--json", status->json, "result for programs; - for standard output");
+  command->add_option("--json", status->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([status] { run_status(*status); });
 }
 

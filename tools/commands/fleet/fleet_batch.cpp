@@ -276,7 +276,8 @@ void add_batch(CLI::App& fleet) {
       ->type_name(kReadsFolder)
       ->required();
   add_registry(*command, collect->registry);
-  command->add_option("--json", collect->json, "result for programs; - for standard output");
+  command->add_option("--json", collect->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "The command may be called several times, also while the batch runs. Exit status 0 the answers of all\n"
       "machines are booked, 1 bad input, 2 some answers are not booked (the command lists these answers).");
@@ -284,9 +285,10 @@ void add_batch(CLI::App& fleet) {
 
   const auto answers = std::make_shared<CollectArguments>();
   command = fleet.add_subcommand("answers", "list the booked answers of batches");
-  command->add_option("NAME", answers->folder, "only of batches with this name");
+  command->add_option("NAME", answers->folder, "list only the answers of batches with this name");
   add_registry(*command, answers->registry);
-  command->add_option("--json", answers->json, "result for programs; - for standard output");
+  command->add_option("--json", answers->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([answers] { run_answers(*answers); });
 }
 

@@ -31,9 +31,10 @@ upload::BoardClaim claim_of(const registry::FleetMachine& one) {
   if (one.board.empty())
     throw text::InputError(
         {}, one.name,
-        "the registry has no board name for this machine; add the name: vernier fleet add " + one.name +
-            " --board NAME --board-key KEY, or --trust to store name and key of the board that answers at "
-            "the address");
+        fmt::format(
+            "the registry has no board name for this machine; add the name: vernier fleet add {} --board "
+            "NAME --board-key KEY, or --trust to store name and key of the board that answers at the address",
+            one.name));
   upload::BoardClaim claim{one.board, std::nullopt};
   if (!one.board_key.empty()) claim.key = upload::parse_board_key(one.board_key);
   return claim;
@@ -45,9 +46,11 @@ void refuse_shared_boards(const std::vector<fleet::RolloutMachine>& machines) {
     for (std::size_t k = 0; k < i; ++k) {
       const bool same_key = machines[i].claim.key && machines[i].claim.key == machines[k].claim.key;
       if (!same_key && machines[i].url != machines[k].url) continue;
-      throw text::InputError({}, machines[i].name,
-                             std::string(same_key ? "has the board key of " : "has the address of ") +
-                                 machines[k].name + ": each machine needs a different board");
+      throw text::InputError(
+          {}, machines[i].name,
+          fmt::format("{}{}: each machine needs a different board",
+                      std::string(same_key ? "has the board key of " : "has the address of "),
+                      machines[k].name));
     }
 }
 
@@ -183,9 +186,10 @@ void run_or_stand(const RolloutArguments& arguments) {
   try {
     run_rollout(arguments);
   } catch (const registry::DatabaseError& error) {
-    throw text::LimitNotMet(std::string("the registry failed: ") + error.what() +
-                            ": the rollout has stopped; each board reverts its image on trial by itself; "
-                            "call the command again when the registry is available");
+    throw text::LimitNotMet(
+        fmt::format("the registry failed: {}: the rollout has stopped; each board reverts its image on trial "
+                    "by itself; call the command again when the registry is available",
+                    error.what()));
   }
 }
 
@@ -241,7 +245,7 @@ void add_rollout(CLI::App& fleet) {
       "--take-over-trial", arguments->options.take_over_trial,
       "revert a trial that another caller began on a board; without this option the board is refused");
   command->add_option("--json", arguments->json,
-                      "state of each machine, for programs; - for standard output");
+                      "file for the state of each machine as JSON, for programs; - for standard output");
   command->footer(
       "The judge command must answer within the trial time of the board, e.g. measure and `vernier compare "
       "--limit`.\n"

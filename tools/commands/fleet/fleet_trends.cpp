@@ -79,7 +79,7 @@ void run_alike(const TrendArguments& arguments) {
       fmt::print(out, "{}: {} drifts by itself, {:.3g} \u00b1 {:.2g} {} a day\n", drift.quantity, one.machine,
                  one.per_day, one.std, drift.unit);
     if (!drift.common && drift.own.empty())
-      fmt::print(out, "{}: no drift ({} machines, {} times, scatter {:.2g} of the stated uncertainty)\n",
+      fmt::print(out, "{}: no drift ({} machines, {} times, scatter {:.2g} times the stated uncertainty)\n",
                  drift.quantity, drift.machines, drift.times, drift.scatter);
     if (drift.wander > 0)
       fmt::print(
@@ -100,7 +100,8 @@ void add_trends(CLI::App& fleet) {
       fleet.add_subcommand("due", "list the machines that are due for a check, with the reason");
   add_registry(*command, due->registry);
   command->add_option("--at", due->at, "time at which the checks are due (UTC); default: now");
-  command->add_option("--json", due->json, "result for programs; - for standard output");
+  command->add_option("--json", due->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([due] { run_due(*due); });
 
   const auto alike = std::make_shared<TrendArguments>();
@@ -121,7 +122,8 @@ void add_trends(CLI::App& fleet) {
                    "probability of reporting any drift if no machine drifts")
       ->check(CLI::Range(1e-9, 0.5))
       ->capture_default_str();
-  command->add_option("--json", alike->json, "result for programs; - for standard output");
+  command->add_option("--json", alike->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "Model: reading = constant of the machine + common curve of time + rate of the machine x time, "
       "weighted by the stated\n"

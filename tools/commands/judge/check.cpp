@@ -137,7 +137,8 @@ void register_check(CLI::App& vernier) {
           "--images", arguments->images,
           "folder of correction images, for rows that were measured while a correction image was running")
       ->type_name(kReadsFolder);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "Each check fits the set-up of the instrument again. The command treats the readings as independent "
       "and\n"

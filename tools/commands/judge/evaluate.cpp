@@ -121,9 +121,9 @@ void run_positioning(const PositioningArguments& arguments) {
   print_result(human_stream(arguments.json), json);
   for (const auto& one : json["characteristics"])
     if (one.contains("conformity") && one["conformity"].is_null())
-      throw text::LimitNotMet(
-          one["name"].get<std::string>() +
-          " cannot be tested: it needs readings in both approach directions, two runs each");
+      throw text::LimitNotMet(one["name"].get<std::string>() +
+                              " cannot be compared with its tolerance, because the file lacks readings in "
+                              "both approach directions, two runs each");
   for (const auto& one : json["characteristics"])
     if (one.contains("conformity") && one["conformity"] == "not met")
       throw text::LimitNotMet("the tolerance of " + one["name"].get<std::string>() + " is not met");
@@ -160,7 +160,8 @@ void register_evaluate(CLI::App& vernier) {
       ->allow_extra_args(false);
   add_report_header(*kind, arguments->header);
   kind->add_option("-o,--output", arguments->output, "report (HTML)")->type_name(kWrites);
-  kind->add_option("--json", arguments->json, "result for programs; - for standard output");
+  kind->add_option("--json", arguments->json,
+                   "file for the result as JSON, for programs; - for standard output");
   kind->footer(
       "The deviation is the reading minus the commanded position. The command computes A, R, E, B, M by ISO "
       "230-2:2014, with the approach directions from dirX or from the order of the rows. Exit status 0 done, "

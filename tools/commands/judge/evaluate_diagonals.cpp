@@ -127,8 +127,8 @@ void run_diagonals(const DiagonalArguments& arguments) {
       evaluate::PositioningWords along;
       along.axis = one.name;
       if (one.name.size() == kBody && !body.emplace(one.name, result).second)
-        throw text::InputError(path + ": the diagonal " + one.name +
-                               " is in two files: put the rows into one file");
+        throw text::InputError(fmt::format(
+            "{}: the diagonal {} is in two files: put all rows of a diagonal into one file", path, one.name));
       Json each = {{"diagonal", one.name}, {"length_mm", one.length}};
       const Json evaluated = evaluate::positioning_json(result, one.positions, along);
       pages.push_back(evaluate::positioning_page(evaluated, along));
@@ -170,7 +170,8 @@ void add_diagonals_kind(CLI::App& evaluate) {
       ->allow_extra_args(false);
   add_report_header(*kind, arguments->header);
   kind->add_option("-o,--output", arguments->output, "report (HTML)")->type_name(kWrites);
-  kind->add_option("--json", arguments->json, "result for programs; - for standard output");
+  kind->add_option("--json", arguments->json,
+                   "file for the result as JSON, for programs; - for standard output");
   kind->footer(
       "Each diagonal is evaluated like an axis by ISO 230-2; the position is the distance along the "
       "diagonal. The result for the machine is the largest value of its body diagonals (E_d, B_d …). Exit "

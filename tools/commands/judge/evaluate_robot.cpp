@@ -192,7 +192,8 @@ void add_robot_kind(CLI::App& evaluate) {
                    "tolerance of a characteristic: RP=100um (also AP; AT RT with --path, AD RD, dAP dRP); "
                    "repeat the option for each characteristic")
       ->allow_extra_args(false);
-  kind->add_option("--json", arguments->json, "result for programs; - for standard output");
+  kind->add_option("--json", arguments->json,
+                   "file for the result as JSON, for programs; - for standard output");
   kind->footer(
       "All rows with the same commanded pose form one group. AP = distance of the barycentre of the group "
       "from the commanded\n"

@@ -51,7 +51,8 @@ void free_only(model::Machine& machine, const std::string& names) {
   std::set<std::size_t> wanted;
   for (const std::string& name : text::words_in(names, ", ")) {
     const auto index = machine.find_static(name);
-    if (!index) throw text::InputError({"--free", 0}, name, "no static has this name in " + machine.name);
+    if (!index)
+      throw text::InputError({"--free", 0}, name, fmt::format("no static has this name in {}", machine.name));
     wanted.insert(*index);
   }
   for (std::size_t i = 0; i < machine.statics.size(); ++i) {
@@ -235,7 +236,8 @@ std::array<double, 4> read_gauge_block(const std::string& file) {
     if (!(quarter >= 0 && quarter <= 3) || quarter != std::floor(quarter))
       throw text::InputError(place, csv.rows[row][c], "C must be 0, 90, 180 or 270");
     auto& slot = found[static_cast<std::size_t>(quarter)];
-    if (slot) throw text::InputError(place, csv.rows[row][c], "the file has two readings of this position");
+    if (slot)
+      throw text::InputError(place, csv.rows[row][c], "the file has two readings at this position of C");
     slot = *reading;
   }
   std::array<double, 4> y_mm{};
@@ -281,7 +283,9 @@ void add_s_shape(CLI::App& part) {
   command->add_option("--feed", a->feed_mm_min, "mm/min on the top curve")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  command->add_option("--step", a->step_mm, "longest step on the top curve, mm")
+  command
+      ->add_option("--step", a->step_mm,
+                   "largest distance between two positions of the path on the top curve, mm")
       ->capture_default_str()
       ->check(CLI::Range(0.005, 20.0));
   command
@@ -335,11 +339,14 @@ void add_s_shape(CLI::App& part) {
       ->add_option("--uncertainty", a->u95_mm,
                    "expanded uncertainty (k = 2) of the machine that measured the part, mm")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("-o,--output", a->output, "directory for paths (CSV, G-code), defect, machine, report")
+  command
+      ->add_option(
+          "-o,--output", a->output,
+          "output directory for the paths (CSV, G-code), the defect, the machine file and the report")
       ->type_name(kWritesFolder)
       ->required();
   add_report_header(*command, a->header);
-  command->add_option("--json", a->json, "result for programs; - for standard output");
+  command->add_option("--json", a->json, "file for the result as JSON, for programs; - for standard output");
   command->callback([a] { run_s_shape(*a); });
 }
 
@@ -349,10 +356,10 @@ void add_gauge_block(CLI::App& part) {
       "gauge-block",
       "compute EA0B and EX0B from readings of a gauge block along Y at C = 0, 90, 180, 270 deg");
   command->add_option("FILE", a->file, "CSV with C[deg] and y[mm]")->type_name(kReads)->required();
-  command->add_option("--pivot-length", a->pivot_mm, "B axis to tool tip, mm")
+  command->add_option("--pivot-length", a->pivot_mm, "distance from the B axis to the tool tip, mm")
       ->required()
       ->check(CLI::PositiveNumber);
-  command->add_option("--json", a->json, "result for programs; - for standard output");
+  command->add_option("--json", a->json, "file for the result as JSON, for programs; - for standard output");
   command->callback([a] { run_gauge_block(*a); });
 }
 

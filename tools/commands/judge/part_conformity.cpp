@@ -93,8 +93,9 @@ text::Assurance assurance_of(const model::Machine& machine, const tolerance::Par
   word.require("settled", result.settled,
                "The number of trials is sufficient: the limits of the intervals have converged.");
   for (const std::string& range : result.outside)
-    word.not_covered("The part is outside the measured range: " + range + ".");
-  for (const std::string& name : result.stale) word.not_covered(name + " was set by hand since the fit.");
+    word.not_covered(fmt::format("The part is outside the measured range: {}.", range));
+  for (const std::string& name : result.stale)
+    word.not_covered(fmt::format("A parameter was set by hand since the fit: {}.", name));
   if (arguments.process_um <= 0)
     word.not_covered(
         "The result does not include repeatability, tool and cutting, because --process was not given.");
@@ -176,7 +177,8 @@ void print_conformity(std::FILE* out, const tolerance::PlacedPart& part,
                           : "the model is linear in the uncertain parameters of the machine");
   fmt::print(out, "{}\n", motion_words(part));
   if (!result.settled) fmt::print(out, "the trials stopped before the ends of the intervals converged\n");
-  for (const std::string& name : result.stale) fmt::print(out, "set by hand since the fit: {}\n", name);
+  for (const std::string& name : result.stale)
+    fmt::print(out, "parameter that was set by hand since the fit: {}\n", name);
   for (const std::string& range : result.outside)
     fmt::print(out, "the part is outside the measured range: {}. Characteristics there have no verdict\n",
                range);
@@ -221,8 +223,10 @@ std::string conformity_page(const model::Machine& machine, const ConformityArgum
          fmt::format("{:.0f} %", 100 * one.open)});
   Json notes = Json::array();
   for (const std::string& range : result.outside)
-    notes.push_back("The part is outside the measured range: " + range +
-                    ". Characteristics outside the measured range have no verdict.");
+    notes.push_back(
+        fmt::format("The part is outside the measured range: {}. Characteristics outside the measured range "
+                    "have no verdict.",
+                    range));
   if (machine.fitted)
     for (const model::FitRecord::Finding& one : machine.fitted->findings)
       notes.push_back("Found by the fit: " + one.text);
@@ -348,9 +352,9 @@ void add_conformity(CLI::App& part) {
       "--uncorrected", a->uncorrected,
       "predict the part for the machine without its correction; the exit status is for this case");
   command->add_option("--images", a->images, simulate::kImagesHelp)->type_name(kReadsFolder);
-  command->add_option("-o,--output", a->output, "the result as a page (HTML)")->type_name(kWrites);
+  command->add_option("-o,--output", a->output, "file for the report (HTML)")->type_name(kWrites);
   add_report_header(*command, a->header);
-  command->add_option("--json", a->json, "result for programs; - for standard output");
+  command->add_option("--json", a->json, "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "Monte Carlo simulation over the covariance of the last fit (JCGM 101). The verdict is \"conforms\" or "
       "\"does not\n"

@@ -60,16 +60,17 @@ vibration::DisplacementChoice displacement_choice_of(const FeaturesArguments& ar
   const bool asked = by_corner || !arguments.cutoff.empty() || !arguments.against.empty();
   if (asked && !wants_displacement(arguments))
     throw text::InputError(
-        fmt::format("--corner, --cutoff and --against go with --features {}", vibration::kDisplacementName));
+        fmt::format("--corner, --cutoff and --against require --features {}", vibration::kDisplacementName));
   vibration::DisplacementChoice choice;
   choice.cut = by_corner ? vibration::Cut::kCorner : vibration::Cut::kPower;
   choice.resolution = arguments.resolution;
   if ((word == kBestAgreement) == arguments.against.empty())
-    throw text::InputError(fmt::format("\"{}\" and --against SIGNAL=COLUMN go together", kBestAgreement));
+    throw text::InputError(
+        fmt::format("\"{}\" and --against SIGNAL=COLUMN must be given together", kBestAgreement));
   if (word == kBestAgreement || word.empty() || (!by_corner && word == "noise")) return choice;
   choice.value = text::parse_number(word);
   if (!choice.value || !(*choice.value > 0))
-    throw text::InputError(fmt::format("{} {}: no number above 0, nor {}",
+    throw text::InputError(fmt::format("{} {}: the value must be a number above 0, or {}",
                                        by_corner ? "--corner" : "--cutoff", word,
                                        by_corner ? "fit" : "fit or noise"));
   return choice;
@@ -82,7 +83,7 @@ std::vector<vibration::KnownDisplacement> known_displacements(const FeaturesArgu
   for (const std::string& pair : arguments.against) {
     const auto equals = pair.find('=');
     if (equals == std::string::npos)
-      throw text::InputError("--against: not of the form SIGNAL=COLUMN: " + pair);
+      throw text::InputError(fmt::format("--against: not of the form SIGNAL=COLUMN: {}", pair));
     known.push_back({pair.substr(0, equals), vibration::measured_lengths_um(rows, pair.substr(equals + 1))});
   }
   return known;
@@ -348,7 +349,8 @@ void register_features(CLI::App& vernier) {
                    "with --by-position: length of the path, mm, on which the position of the next row is "
                    "searched; the search starts at the position of the row before (20)")
       ->check(CLI::PositiveNumber);
-  command->add_option("--json", arguments->json, "result for programs, - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([arguments] { run_features(*arguments); });
 }
 

@@ -67,7 +67,8 @@ void add_import_output(CLI::App& kind, ImportOutput& output) {
   kind.add_option("-o,--output", output.csv_path, "Measurement file to write (CSV)")
       ->type_name(kWrites)
       ->required();
-  kind.add_option("--json", output.json_path, "Result for programs; - is standard output")
+  kind.add_option("--json", output.json_path,
+                  "File for the result as JSON, for programs; - for standard output")
       ->type_name(kWrites);
 }
 

@@ -140,8 +140,9 @@ void write_import(const std::string& kind, const std::vector<importer::BallbarFi
   for (const auto& file : files) {
     for (const auto& note : file.notes) notes.push_back(file.path + ": " + note);
     if (!spans_a_circle(file)) {
-      notes.push_back(file.path + ", " + file.axis_a + file.axis_b +
-                      ": the arc is too short to compute centre, radius and circular deviation");
+      notes.push_back(
+          fmt::format("{}, {}{}: the arc is too short to compute centre, radius and circular deviation",
+                      file.path, file.axis_a, file.axis_b));
       continue;
     }
     const importer::CircularResult circle =

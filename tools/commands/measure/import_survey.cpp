@@ -183,7 +183,9 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
 
 void add_survey_options(CLI::App& kind, const std::shared_ptr<SurveyArguments>& arguments) {
   kind.add_option("file", arguments->file, "table of the instrument (text)")->type_name(kReads)->required();
-  kind.add_option("--map", arguments->map, "column map: the meanings of the columns")->type_name(kReads);
+  kind.add_option("--map", arguments->map,
+                  "file with the column map: the meaning of each column of the table")
+      ->type_name(kReads);
   kind.add_option("--column", arguments->columns,
                   "meaning of a column: \"3=x[mm]\" or \"Name=x[mm]\"; repeat the option for each column")
       ->allow_extra_args(false);
@@ -193,7 +195,7 @@ void add_survey_options(CLI::App& kind, const std::shared_ptr<SurveyArguments>& 
   kind.add_option("--separator", arguments->separator, "space: blanks; default: auto")
       ->check(CLI::IsMember(importer::separator_words()));
   kind.add_option("--decimal", arguments->decimal, "decimal sign")->check(CLI::IsMember({"point", "comma"}));
-  kind.add_option("--skip", arguments->skip, "number of lines at the top to skip");
+  kind.add_option("--skip", arguments->skip, "number of lines at the top of the file that are skipped");
   kind.add_option(
       "--comment", arguments->comment,
       "mark of a comment: lines that begin with this text are skipped; none: no comments; default: #");

@@ -175,7 +175,8 @@ void add_table_kind(CLI::App& kind) {
                   "machine file: the command finds the columns of its axes, and checks that a fit can read "
                   "the result")
       ->type_name(kReads);
-  kind.add_option("--json", arguments->json, "result for programs; - for standard output")
+  kind.add_option("--json", arguments->json,
+                  "file for the result as JSON, for programs; - for standard output")
       ->type_name(kWrites);
   kind.footer(
       "The command reads headings in their usual forms: X [mm], X(mm), X soll, X ist in \u00b5m, Abweichung "

@@ -43,7 +43,7 @@ void run_lint(const LintArguments& arguments) {
     for (const lint::LintFinding& finding : file.findings)
       fmt::print(out, "{}\n", lint::in_one_line(finding));
     if (file.findings.empty())
-      fmt::print(out, "{}: nothing odd about this {} file\n", text::printable(file.file),
+      fmt::print(out, "{}: no error and no unusual entry in this {} file\n", text::printable(file.file),
                  lint::linted_kind_name(file.kind));
     useless += file.usable ? 0 : 1;
   }
@@ -62,7 +62,8 @@ void register_lint(CLI::App& vernier) {
   command->add_option("FILE", arguments->files, "machine files (XML) and measurement files (CSV) in any mix")
       ->type_name(kReads)
       ->required();
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "error: the file cannot be used; warning: the file can be used, but its meaning may differ from the "
       "intended\n"

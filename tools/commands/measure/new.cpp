@@ -34,8 +34,8 @@ std::array<double, 3> point_of(const std::string& text, char separator, const st
   for (std::size_t k = 0; k < 3; ++k) {
     const auto number = k < parts.size() ? text::parse_number(parts[k]) : std::nullopt;
     if (!number || parts.size() != 3)
-      throw text::InputError(what + " " + text + ": three lengths in mm, such as " +
-                             (separator == ',' ? "0,0,-120" : "C:250:200:0"));
+      throw text::InputError(fmt::format("{} {}: three lengths in mm, such as {}", what, text,
+                                         separator == ',' ? "0,0,-120" : "C:250:200:0"));
     point[k] = *number;
   }
   return point;
@@ -60,8 +60,8 @@ create::MachinePlan plan_of_urdf(const NewArguments& arguments, const CLI::App& 
   if (arguments.type != "robot") throw text::InputError("--urdf: this option is only for the type robot");
   for (const char* option : {"--dh", "--joint", "--axis"})
     if (command.count(option) > 0)
-      throw text::InputError(std::string(option) +
-                             ": not allowed together with --urdf, which describes the arm");
+      throw text::InputError(
+          fmt::format("{}: not allowed together with --urdf, which describes the arm", std::string(option)));
   const create::UrdfArm arm =
       create::parse_urdf(text::read_file(arguments.urdf), arguments.urdf, arguments.tip);
   create::MachinePlan plan = create::plan_robot(arm.axes, arm.rows);
@@ -81,14 +81,15 @@ create::MachinePlan plan_of_words(const NewArguments& arguments, const CLI::App&
   if (arguments.type == "robot") {
     for (const char* option : {"--tool-side", "--work-side", "--centre"})
       if (command.count(option) > 0)
-        throw text::InputError(
-            std::string(option) +
-            ": this option is not for the type robot; --dh or --joint describes the chain of a robot");
+        throw text::InputError(fmt::format(
+            "{}: this option is not for the type robot; --dh or --joint describes the chain of a robot",
+            std::string(option)));
     plan = create::plan_robot(std::move(axes), arm_of(arguments));
   } else {
     for (const char* option : {"--dh", "--joint"})
       if (command.count(option) > 0)
-        throw text::InputError(std::string(option) + ": this option is only for the type robot");
+        throw text::InputError(
+            fmt::format("{}: this option is only for the type robot", std::string(option)));
     plan = create::plan_machine(arguments.type, std::move(axes), order("--tool-side", arguments.tool_side),
                                 order("--work-side", arguments.work_side));
   }
@@ -105,7 +106,9 @@ create::MachinePlan plan_of_words(const NewArguments& arguments, const CLI::App&
         axis.centre = point_of(words.substr(colon + 1), ':', "--centre");
         found = true;
       }
-    if (!found) throw text::InputError("--centre " + words + ": NAME:X:Y:Z of a rotary axis");
+    if (!found)
+      throw text::InputError(
+          fmt::format("--centre {}: the value must be NAME:X:Y:Z, where NAME is a rotary axis", words));
   }
   return plan;
 }
@@ -131,9 +134,20 @@ std::string reading_help() {
   return text::joined(list, "; ");
 }
 
+/// Adds the object that the probe touches, for the column `on`: a plane such as the bed of a printer.
+std::string with_artefact(std::string text) {
+  const std::string end = "</variables>";
+  const std::size_t at = text.find(end);
+  if (at == std::string::npos) throw std::logic_error("a machine file without variables");
+  return text.insert(at,
+                     "  <!-- The object that the probe touches, named in the column on: type plane, sphere, "
+                     "cylinder, line or point. -->\n    <artefact name=\"bed\" type=\"plane\"/>\n  ");
+}
+
 void run_new(const NewArguments& arguments, const CLI::App& command) {
   const create::MachinePlan plan = plan_of(arguments, command);
-  const std::string text = create::machine_file(plan);
+  const bool touches = create::reading_of(arguments.reading).list().front() == format::ReadingForm::kOn;
+  const std::string text = touches ? with_artefact(create::machine_file(plan)) : create::machine_file(plan);
   const model::Machine machine = model::parse_machine(text, arguments.output);
   if (!arguments.measurements.empty()) text::require_place(arguments.measurements);
   const std::string survey = create::survey_template(machine, create::reading_of(arguments.reading));
@@ -200,8 +214,10 @@ void register_new(CLI::App& vernier) {
   command->add_option("--tool", arguments->tool,
                       "tool point in the frame of the last axis that carries the tool, mm: 0,0,-120");
   command->add_option("--name", arguments->name, "name of the machine");
-  command->add_option("--tool-side", arguments->tool_side, "axes from the bed to the tool: Y,X,Z");
-  command->add_option("--work-side", arguments->work_side, "axes from the bed to the workpiece: A,C");
+  command->add_option("--tool-side", arguments->tool_side,
+                      "axes that carry the tool, in the order from the bed to the tool: Y,X,Z");
+  command->add_option("--work-side", arguments->work_side,
+                      "axes that carry the workpiece, in the order from the bed to the workpiece: A,C");
   command
       ->add_option("--centre", arguments->centres,
                    "NAME:X:Y:Z: a point on the line of a rotary axis, mm; repeat for each axis")
@@ -224,7 +240,8 @@ void register_new(CLI::App& vernier) {
   command->add_option(
       "--tip", arguments->tip,
       "last link of the arm in the URDF (default: the only last link); --tool is in the frame of this link");
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "The type of the machine determines the order of the axes and whether each axis carries the tool or "
       "the workpiece;\n"

@@ -170,7 +170,7 @@ void judge(std::FILE* out, const nlohmann::ordered_json& limit) {
       worst["limit"].get<double>(), limit["unit"].get<std::string>(), worst["file"].get<std::string>(),
       worst["line"].get<std::size_t>());
   if (!limit["pass"].get<bool>())
-    throw text::LimitNotMet(words + ": not accepted, the machine is to be qualified again");
+    throw text::LimitNotMet(fmt::format("{}: not accepted, the machine is to be qualified again", words));
   fmt::print(out, "{}: accepted\n", words);
 }
 
@@ -181,7 +181,8 @@ void add_field(nlohmann::ordered_json& json, const model::Machine& machine) {
   if (auto field = results::volume_json(machine, kNodes, why_not))
     json["field"] = std::move(*field);
   else
-    json["field_note"] = "The report has no diagram of the error over the working volume: " + why_not;
+    json["field_note"] =
+        fmt::format("The report has no diagram of the error over the working volume: {}", why_not);
 }
 
 /// Did it help?
@@ -189,8 +190,8 @@ void run_before_after(const CompareArguments& arguments) {
   if (arguments.before.empty() || arguments.after.empty())
     throw text::InputError("--before and --after must be given together");
   if (!arguments.measurements.empty())
-    throw text::InputError("\"" + arguments.measurements.front() +
-                           "\": with --before and --after give no other measurement files");
+    throw text::InputError(fmt::format("\"{}\": with --before and --after give no other measurement files",
+                                       arguments.measurements.front()));
   if (arguments.datum)
     throw text::InputError(
         "--datum is for the files MEAS; with --before and --after the command always fits the set-up of both "
@@ -283,10 +284,13 @@ void register_compare(CLI::App& vernier) {
                     "fit the set-up of the instrument (free BaseShifts) before the comparison: the residuals "
                     "then contain no offset and rotation of the set-up");
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
-  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "file for the report (HTML, one file that opens without a network)")
       ->type_name(kWrites);
   add_report_header(*command, arguments->header);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp)->type_name(kWrites);
   command->footer(
       "The report has the ISO 230-4 values and the polar plot (for ball-bar data), the residual against "

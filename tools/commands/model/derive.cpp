@@ -40,10 +40,11 @@ void register_derive(CLI::App& vernier) {
   CLI::App* const command = vernier.add_subcommand(
       "derive", "Derive the error equation in symbols (text, LaTeX) with a bound of its second order");
   command->add_option("machine", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
-  command->add_flag("--latex", arguments->latex, "LaTeX (amsmath) in place of text");
+  command->add_flag("--latex", arguments->latex, "write the equation as LaTeX (amsmath) instead of text");
   command->add_option("-o,--output", arguments->output, "file for the equation (default: standard output)")
       ->type_name(kWrites);
-  command->add_option("--json", arguments->json, "result for programs (- is standard output)");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command
       ->add_option("--length", arguments->sizes.length_mm,
                    "size of a length error for the bound, mm, if the machine file does not state the scale")

@@ -52,8 +52,9 @@ void print_ladder(std::FILE* out, const diagnose::Diagnosis& d, const model::Mea
 
 void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
   if (d.candidates.empty()) return;
-  fmt::print(out, "{:<58} {:>8} {:>12} {:>12} {:>9}\n", "candidates, each as the only added effect", "score",
-             "fit rows", "check rows", "p");
+  fmt::print(out, "{:<58} {:>8} {:>12} {:>12} {:>9}\n",
+             "candidate effects, each evaluated as the only added effect", "score", "fit rows", "check rows",
+             "p");
   for (const diagnose::CandidateFinding& c : d.candidates) {
     fmt::print(out, "{} {:<56} {:>8.1f} {:>12} {:>12} {:>9.2g}\n", c.accepted ? "*" : " ", c.candidate.spoken,
                c.score, results::error_or_dash(c.rms_after_um, c.rms_after_urad),
@@ -124,7 +125,8 @@ void register_diagnose(CLI::App& vernier) {
   add_survey(*command, arguments->survey);
   command->add_option("-o,--output", arguments->output, "report (HTML)")->type_name(kWrites);
   add_report_header(*command, arguments->header);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp)->type_name(kWrites);
   command
       ->add_option("--machine-out", arguments->write,

@@ -81,7 +81,8 @@ void register_exclude(CLI::App& vernier) {
       "lines of the rows to exclude: 12,15-20; without this option the command lists the excluded rows");
   command->add_option("--reason", arguments->reason, "reason, stored with each row")->capture_default_str();
   command->add_flag("--restore", arguments->restore, "include again the excluded rows on these lines");
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "An excluded row stays in its line as a comment with the reason, so every other row keeps its line "
       "number\n"
@@ -100,7 +101,8 @@ void register_set(CLI::App& vernier) {
   command->add_option("-o,--output", arguments->output, "the new machine file")
       ->type_name(kWrites)
       ->required();
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer("Exit status 0 done, 1 bad input (nothing written).");
   command->callback([arguments] { run_set(*arguments); });
 }

@@ -62,7 +62,8 @@ void run_effects(const EffectsArguments& arguments) {
       print_effect(out, effect);
   }
   if (!found)
-    throw text::InputError("\"" + arguments.id + "\": unknown effect (`vernier effects` lists them)");
+    throw text::InputError(
+        fmt::format("\"{}\": unknown effect (`vernier effects` lists them)", arguments.id));
   write_json(arguments.json, json);
 }
 
@@ -100,7 +101,8 @@ void register_effects(CLI::App& vernier) {
   command->add_option("ID", arguments->id, "id of an effect: print only this effect, with its forms");
   command->add_option("--effects", arguments->files, "files with effects of your own; may be repeated")
       ->type_name(kReads);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "Write your own effects into a text file (no recompilation is necessary): see tools/docs/effects.md.");
   command->callback([arguments] { run_effects(*arguments); });
@@ -119,7 +121,8 @@ void register_add(CLI::App& vernier) {
       ->required();
   command->add_option("--effects", arguments->files, "files with effects of your own; may be repeated")
       ->type_name(kReads);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "Keys: axis, axis2, input, input2, branch, transform (its n), dof, reference, unit, form, sum, from, "
       "to, runs,\n"

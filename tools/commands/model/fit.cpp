@@ -212,7 +212,8 @@ void register_fit(CLI::App& vernier) {
       ->required();
   command->add_option("-o,--output", arguments->output, "the fitted machine file")->type_name(kWrites);
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_option("--residuals", arguments->residuals, kResidualsHelp)->type_name(kWrites);
   command->add_option("--loss", arguments->loss, "squared, huber or cauchy")
       ->check(CLI::IsMember({"squared", "huber", "cauchy"}))
@@ -236,7 +237,7 @@ void register_fit(CLI::App& vernier) {
   command->add_option("--prior", arguments->priors,
                       "NAME=STD: prior for parameters: their nominal value counts as a reading with the "
                       "standard uncertainty STD; may be repeated");
-  command->add_option("--solver", arguments->solver, "normal-equations, or ceres as a cross-check")
+  command->add_option("--solver", arguments->solver, "solver: normal-equations, or ceres as a cross-check")
       ->check(CLI::IsMember({"normal-equations", "ceres"}))
       ->capture_default_str();
   command->footer(

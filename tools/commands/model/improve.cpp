@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iostream>
@@ -267,7 +268,10 @@ class Improver {
       const safety::SafetySheet sheet =
           safety::safety_sheet(model::parse_machine(model_steps_.back().text, model_steps_.back().file));
       json["safe_to_run"] = results::safe_to_run_json(sheet);
-      fmt::print(out_, "{}\n", sheet.ok() ? "safe to run: every rule of the sheet holds" : sheet.refusal());
+      const std::vector<std::string> unknown = sheet.not_known();
+      fmt::print(
+          out_, "{}{}\n", sheet.ok() ? "safe to run: every rule of the safety sheet is met" : sheet.refusal(),
+          unknown.empty() ? "" : fmt::format("; without a value, not judged: {}", fmt::join(unknown, ", ")));
     } catch (const text::InputError& error) {
       fmt::print(out_, "safe to run: not judged: {}\n", error.what());
     }
@@ -299,7 +303,8 @@ void register_improve(CLI::App& vernier) {
   command->add_option("--effects", arguments->effects, "files with effects of your own; may be repeated")
       ->type_name(kReads);
   add_report_header(*command, arguments->header);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_flag("--yes", arguments->yes,
                     "add every effect that diagnose names, without a question to the user");
   command->footer(

@@ -241,10 +241,13 @@ void register_map(CLI::App& vernier) {
   CLI::App* command = vernier.add_subcommand(
       "map", "Show the error over the working volume and the uncertainty of this error");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
-  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "file for the report (HTML, one file that opens without a network)")
       ->type_name(kWrites);
   add_report_header(*command, arguments->header);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_option("--grid", arguments->grid, "nodes along each axis")
       ->check(CLI::Range(2, 40))
       ->capture_default_str();

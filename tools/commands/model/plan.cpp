@@ -209,9 +209,9 @@ void run_plan(const PlanArguments& arguments) {
   }
   const bool aimed = !arguments.part.path.empty() || !arguments.region.empty() || !arguments.tool.empty();
   if (aimed && !arguments.separate.empty())
-    throw text::InputError(
-        {}, "--separate",
-        "distinguishes two effects; --part, --region and --tool define where accuracy matters");
+    throw text::InputError({}, "--separate",
+                           "this option distinguishes two effects, and --part, --region and --tool state "
+                           "where the accuracy matters: give only one of the two kinds");
   if (arguments.measurements.empty() && !aimed) return run_first_plan(arguments);
   if (arguments.separate.empty()) return run_accuracy_plan(arguments);
   const std::string text = text::read_file(arguments.machine);
@@ -361,7 +361,8 @@ void register_plan(CLI::App& vernier) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "With MEAS and --accuracy the command fits the model, then chooses the next poses one by one: each "
       "pose gives the largest\n"

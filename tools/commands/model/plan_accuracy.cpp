@@ -23,7 +23,9 @@ std::vector<model::WorkRange> region_of(const model::Machine& machine, const std
   for (const std::string& word : text::words_in(words, ", ")) {
     const auto equals = word.find('='), colon = word.find(':');
     const auto axis = machine.find_axis(word.substr(0, equals));
-    if (!axis) throw text::InputError({"--region", 0}, word, "this name is not an axis of " + machine.name);
+    if (!axis)
+      throw text::InputError({"--region", 0}, word,
+                             fmt::format("this name is not an axis of {}", machine.name));
     const auto low = colon == std::string::npos || equals == std::string::npos
                          ? std::nullopt
                          : text::parse_number(word.substr(equals + 1, colon - equals - 1));
@@ -131,7 +133,7 @@ void run_accuracy_plan(const PlanArguments& arguments) {
         {}, "--accuracy",
         "U95 that the plan must reach (or --points), or --separate A,B: two effects to distinguish");
   if (!arguments.part.path.empty() && !arguments.region.empty())
-    throw text::InputError({}, "--region", "either a part or a region");
+    throw text::InputError({}, "--region", "give either --part or --region, not both");
   const model::Machine machine = read_model(arguments.machine);
   plan::AccuracyAim aim;
   aim.words = machine.volume.empty() ? "the axes' ranges" : "the volume";

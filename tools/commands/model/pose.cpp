@@ -94,7 +94,8 @@ void register_pose(CLI::App& vernier) {
                       "a tool of the file's <tools>, or \"X,Y,Z\" in mm from the end of the chain");
   command->add_flag("--rotary", arguments->with_rotary,
                     "correct with all axes, tool point and tool direction; default: linear axes, tool point");
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "Tool point in workpiece coordinates (no BaseShift), mm; rotation vector in deg. Exit status 0 done,\n"
       "1 bad input, 2 the correction does not converge.");

@@ -65,8 +65,8 @@ text::Assurance assurance_of(const model::Machine& machine, const kinematics::In
     if (axis.max)
       assurance.at_most("max-" + axis.name, value, *axis.max + kRangeSlack, "Upper end of its range.");
     if (!axis.min || !axis.max)
-      assurance.not_covered("The machine file has no min and max of " + axis.name +
-                            ": its range is not known.");
+      assurance.not_covered(fmt::format(
+          "The range of an axis is not known, because the machine file has no min and max: {}.", axis.name));
   }
   assurance.not_covered("Collisions are not tested.");
   return assurance;
@@ -96,12 +96,13 @@ std::string failure_text(const model::Machine& machine, const kinematics::Invers
       fmt::format("residual {:.3g} mm, {:.3g} deg after {} iterations, condition {:.3g}", proof.residual_mm,
                   proof.residual_deg, proof.iterations, proof.condition);
   if (proof.fault == kinematics::InverseFault::kSingular)
-    return "no solution: the pose is singular, so the axes cannot move the tool in every direction (" +
-           residual + ")";
+    return fmt::format(
+        "no solution: the pose is singular, so the axes cannot move the tool in every direction ({})",
+        residual);
   if (proof.fault == kinematics::InverseFault::kBeyondRange)
-    return "no solution: axis " + machine.axes[proof.axis].name + " would have to leave its range (" +
-           residual + ")";
-  return "no solution: the target is out of reach of these axes (" + residual + ")";
+    return fmt::format("no solution: an axis would have to leave its range: {} ({})",
+                       machine.axes[proof.axis].name, residual);
+  return fmt::format("no solution: the target is out of reach of these axes ({})", residual);
 }
 
 void run_solve(const SolveArguments& arguments) {
@@ -140,8 +141,10 @@ void register_solve(CLI::App& vernier) {
                    "target in workpiece coordinates: tool point x,y,z (mm); for a pose also the rotation "
                    "vector rx,ry,rz (deg) of the tool")
       ->required();
-  command->add_option("--start", arguments->start, "first guess, motion and inputs: \"X=100,B=20,T=25\"");
-  command->add_option("--axes", arguments->axes, "axes that may move; default: all")->delimiter(',');
+  command->add_option("--start", arguments->start,
+                      "start positions of the axes, motion and inputs: \"X=100,B=20,T=25\"");
+  command->add_option("--axes", arguments->axes, "axes that the solution may move; default: all axes")
+      ->delimiter(',');
   command
       ->add_option("--match", arguments->match,
                    "kind of target; auto: position if no rotation is given, pose otherwise")
@@ -154,7 +157,8 @@ void register_solve(CLI::App& vernier) {
                    "number of additional start positions, distributed over the axis ranges")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "The command verifies every solution: it compares the forward kinematics of the computed axis "
       "positions with the target. Exit status\n"

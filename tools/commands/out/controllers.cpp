@@ -33,7 +33,8 @@ exchange::ControllerSetting setting_of(const ControllerArguments& arguments) {
   for (std::size_t i = 0; i < 3; ++i) {
     constexpr double kMost = 99;
     if (numbers[i] != std::floor(numbers[i]) || numbers[i] < 1 || numbers[i] > kMost)
-      throw text::InputError("--numbers: '" + arguments.numbers + "' must be three numbers from 1 to 99");
+      throw text::InputError(
+          fmt::format("--numbers: '{}' must be three numbers from 1 to 99", arguments.numbers));
     setting.number[i] = static_cast<int>(numbers[i]);
   }
   return setting;
@@ -132,7 +133,9 @@ void add_controller(CLI::App* parent, const char* name, const char* what, Contro
                    "distance between two points of a table, mm; default: the largest distance that "
                    "--tolerance permits")
       ->check(CLI::PositiveNumber);
-  command->add_option("--tolerance", arguments->common.tolerance_um, "largest error between two points, um")
+  command
+      ->add_option("--tolerance", arguments->common.tolerance_um,
+                   "largest permitted interpolation error between two points of a table, um")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command

@@ -134,9 +134,11 @@ void run_correct(const CorrectArguments& arguments) {
   fmt::print(out, "{}: {} positions, corrections up to {}", arguments.output, summary.positions,
              largest_corrections(summary, machine, options.with_rotary));
   if (json.contains("moves"))
-    fmt::print(out, "; {} moves as {}, {} of them arcs", json["moves"].get<std::size_t>(),
-               json["moves_written"].get<std::size_t>(), json["arcs_written"].get<std::size_t>());
-  if (path_um) fmt::print(out, "; off the corrected path by {:.3g} um at most", *path_um);
+    fmt::print(out, "; {} moves of the program become {} moves, {} of them arcs",
+               json["moves"].get<std::size_t>(), json["moves_written"].get<std::size_t>(),
+               json["arcs_written"].get<std::size_t>());
+  if (path_um)
+    fmt::print(out, "; the written path differs from the corrected path by at most {:.3g} um", *path_um);
   fmt::print(out, "; left over {:.3g} um\n", 1000 * summary.left_mm);
 }
 
@@ -178,7 +180,8 @@ void register_correct(CLI::App& vernier) {
                     "write arcs as straight blocks, for a control that does not execute G2 and G3");
   command->add_flag("--rotary", arguments->with_rotary,
                     "correct with all axes, tool point and tool direction; default: as in the machine file");
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "The output file is marked as corrected or converted back, and the command refuses a second "
       "conversion. Exit status\n"

@@ -64,6 +64,12 @@ void export_screw(const ExchangeArguments& arguments) {
   for (const std::size_t axis : axes)
     for (exchange::LeftOut& one : exchange::beyond_own_axis(machine, axis, at))
       left_out.push_back(std::move(one));
+  if (arguments.axis.empty() && !left_out.empty() && !arguments.leave_out) {
+    // The component applies the whole machine file.
+    fmt::print(stderr, "note: no screw-compensation file: {}\n",
+               exchange::left_out_in_words("a screw-compensation file", left_out));
+    return export_component(arguments);
+  }
   exchange::refuse(machine, "a screw-compensation file", left_out, arguments.leave_out);
   require_safe(machine, arguments);
   std::vector<std::string> texts;
@@ -160,7 +166,8 @@ CLI::App* add_import(CLI::App* parent, const char* kind, const char* what,
   command->add_option("-o,--output", arguments->output, "machine file to write")
       ->type_name(kWrites)
       ->required();
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([arguments, name = std::string(kind)] { import_tables(*arguments, name); });
   return command;
 }

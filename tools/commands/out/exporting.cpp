@@ -35,7 +35,7 @@ text::Assurance assurance_of(const model::Machine& machine, const ExchangeArgume
         "between-lines-" + one.axis, one.worst_um, arguments.tolerance_um,
         fmt::format("Largest error between the lines of {}, um, at {} positions.", one.axis, one.probed));
   for (const std::string& rule : arguments.accept)
-    assurance.not_covered("The rule " + rule + " of the sheet was accepted by the user.");
+    assurance.not_covered(fmt::format("The user accepted a rule of the safety sheet (--accept): {}.", rule));
   return assurance;
 }
 
@@ -103,9 +103,11 @@ std::vector<exchange::LeftOut> remaining(const std::array<double, 3>& after_um) 
 }
 
 void print_rms(const ExchangeArguments& arguments, std::size_t positions, double before_um, double after_um) {
-  fmt::print(human_stream(arguments.json),
-             "error of the tool point at {} positions, rms: {:.4g} um before, {:.4g} um with the files\n",
-             positions, before_um, after_um);
+  fmt::print(
+      human_stream(arguments.json),
+      "error of the tool point by the model at {} positions, rms: {:.4g} um before, {:.4g} um with the "
+      "files; errors that the model lacks remain in addition\n",
+      positions, before_um, after_um);
 }
 
 CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,
@@ -120,7 +122,8 @@ CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const
   command->add_option("--accept", arguments->accept,
                       "name of a rule of the safety sheet (\"safe to run?\", tools/docs/safety.md) that you "
                       "override; may be repeated");
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   return command;
 }
 

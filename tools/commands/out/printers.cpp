@@ -29,7 +29,7 @@ exchange::PresentSetting present_of(const PrinterArguments& arguments) {
   const std::vector<double> numbers = kinematics::number_list(arguments.steps, {3}, "--steps");
   for (const double number : numbers)
     if (!(number > 0))
-      throw text::InputError("--steps: '" + arguments.steps + "' must be three positive numbers");
+      throw text::InputError(fmt::format("--steps: '{}' must be three positive numbers", arguments.steps));
   present.steps = {numbers[0], numbers[1], numbers[2]};
   return present;
 }

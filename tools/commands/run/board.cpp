@@ -37,7 +37,7 @@ void set_weight(const Arguments& arguments, upload::Client& client) {
   const auto found = std::find_if(
       axes.begin(), axes.end(), [&](const upload::BoardSignal& axis) { return axis.name == arguments.axis; });
   if (found == axes.end())
-    throw text::InputError("--axis \"" + arguments.axis + "\": the board has no such axis");
+    throw text::InputError(fmt::format("--axis \"{}\": the board has no such axis", arguments.axis));
   client.weight(static_cast<std::uint8_t>(found - axes.begin()), arguments.weight);
 }
 
@@ -101,7 +101,8 @@ void register_board(CLI::App& vernier) {
       ->add_option("--weight", arguments->weight,
                    "share of the axis' correction that the board applies, 0 to 1")
       ->check(CLI::Range(0.0, 1.0));
-  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "Exit status: 0 done, 1 bad input or no board, 2 the board refused the request, or another board "
       "answered (nothing was sent).");

@@ -35,11 +35,12 @@ double parse_length_um(const std::string& text) {
     throw text::InputError("--budget \"" + text + "\": not a length");
   }
   const std::string unit = text.substr(used);
-  if (!(value > 0)) throw text::InputError("--budget \"" + text + "\": the value must be greater than zero");
+  if (!(value > 0))
+    throw text::InputError(fmt::format("--budget \"{}\": the value must be greater than zero", text));
   if (unit.empty() || unit == "um") return value;
   if (unit == "nm") return value / 1000;
   if (unit == "mm") return value * 1000;
-  throw text::InputError("--budget \"" + text + "\": unit must be nm, um or mm");
+  throw text::InputError(fmt::format("--budget \"{}\": unit must be nm, um or mm", text));
 }
 
 nlohmann::ordered_json to_json(const compile::OutputBound& b) {
@@ -210,7 +211,8 @@ void register_compile(CLI::App& vernier) {
                    "directory for machine.xml, machine.vimg, equation.h/.cpp, bound.json")
       ->type_name(kWritesFolder)
       ->required();
-  command->add_option("--json", arguments->json, "result for programs (- is standard output)");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->add_option(
       "--budget", arguments->budget,
       "largest permitted error bound of an axis (nm, um, mm; a number without a unit is in um); if a proved "

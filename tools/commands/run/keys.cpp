@@ -35,7 +35,8 @@ void run(const Arguments& arguments) {
   const std::string secret = arguments.directory + "/vernier.key",
                     open = arguments.directory + "/vernier.pub";
   if (std::filesystem::exists(open))
-    throw text::InputError(open + ": the file exists; a key is never overwritten, give another directory");
+    throw text::InputError(
+        fmt::format("{}: the file exists; a key is never overwritten, give another directory", open));
   const upload::SigningKey key = upload::new_key();
   write_secret(secret, upload::secret_key_text(key));
   text::write_file(open, upload::public_key_text(key));
@@ -58,7 +59,8 @@ void register_keys(CLI::App& vernier) {
       ->add_option("-o,--output", arguments->directory, "directory for vernier.key (secret) and vernier.pub")
       ->type_name(kWritesFolder)
       ->capture_default_str();
-  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([arguments] { run(*arguments); });
 }
 

@@ -35,7 +35,8 @@ void add_table(CLI::App& command, TableArguments& arguments) {
                   "is excluded")
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();
-  command.add_option("--json", arguments.json, "result for programs; - is standard output");
+  command.add_option("--json", arguments.json,
+                     "file for the result as JSON, for programs; - for standard output");
 }
 
 void add_conditions(CLI::App& command, probe::TouchConditions& conditions) {
@@ -132,8 +133,8 @@ void run_cal(CalArguments& arguments) {
     groups = probe::compare_groups(table, arguments.setup, arguments.group, result);
   if (!arguments.output.empty()) {
     if (!result.delay_found)
-      throw text::LimitNotMet("the touches do not determine the delay; no file is written: " +
-                              result.findings.front());
+      throw text::LimitNotMet(fmt::format("the touches do not determine the delay; no file is written: {}",
+                                          result.findings.front()));
     text::write_file(arguments.output, board_lines(result));
   }
   Json json = {{"artefact", arguments.artefact},           {"n_touches", table.rows()},

@@ -112,7 +112,8 @@ void register_record(CLI::App& vernier) {
                    "machine file (XML) with the units of the inputs; without it these columns have no units")
       ->type_name(kReads);
   command->add_option("--run", arguments->run, "label of the run column")->default_val("record");
-  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([arguments] { run(*arguments); });
 }
 

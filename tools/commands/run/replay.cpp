@@ -48,8 +48,8 @@ nlohmann::ordered_json step_json(const results::ReplayStep& step, const model::M
 
 void print_step(std::FILE* out, const results::ReplayStep& step, const model::Measurement& m) {
   const simulate::ReplayResult& r = step.result;
-  fmt::print(out, "{}: {} ticks, at a limit {}, slewing {}, not active {}\n", step.label, r.ticks,
-             r.saturated, r.slewing, r.not_active);
+  fmt::print(out, "{}: {} ticks; of these at a limit {}, at the slew limit {}, not active {}\n", step.label,
+             r.ticks, r.saturated, r.slewing, r.not_active);
   for (const bool check : {false, true})
     fmt::print(out, "  rms {} rows  {} -> {}\n", check ? "check" : "fit  ",
                um(fit::role_statistics(m, r.before, check).rms_um),
@@ -104,10 +104,13 @@ void register_replay(CLI::App& vernier) {
           "simpler machine file: the report compares its correction with the correction of the image")
       ->type_name(kReads);
   command->add_option("--images", arguments->images, simulate::kImagesHelp)->type_name(kReadsFolder);
-  command->add_option("-o,--output", arguments->output, "the report, one HTML file that opens offline")
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "file for the report (HTML, one file that opens without a network)")
       ->type_name(kWrites);
   add_report_header(*command, arguments->header);
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "The command runs the firmware along the measured motion, and shifts every reading by the effect of "
       "the correction on\n"

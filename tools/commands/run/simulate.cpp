@@ -70,14 +70,17 @@ void register_simulate(CLI::App& vernier) {
                    "bits of the analogue output of the correction, 8 or 16; default: a digital output with a "
                    "resolution of one unit of the image")
       ->check(CLI::IsMember({8u, 16u}));
-  command->add_option("--json", arguments->json, "result for programs; - for standard output");
-  command->add_option("-o,--output", arguments->output, "every tick: corrections and errors (CSV)")
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "output file with the corrections and errors of every tick (CSV)")
       ->type_name(kWrites);
   command
       ->add_option("--noise-um", arguments->loop.noise_um,
                    "standard deviation of the noise of the position readings")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--delay-ticks", arguments->loop.delay_ticks, "age of the readings in ticks")
+  command->add_option("--delay-ticks", arguments->loop.delay_ticks, "age of the position readings, in ticks")
       ->check(CLI::Range(0, 1000));
   command->add_option("--seed", arguments->loop.seed, "seed of the noise")->capture_default_str();
   command->footer(

@@ -146,7 +146,8 @@ void register_touches(CLI::App& vernier) {
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   command->add_option("--run", arguments->run, "label of the run column")->default_val("probe");
-  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   const char* const kFrame = "Workpiece";
   const auto frame = [&](const char* name, double& value, const char* what) {
     command->add_option(name, value, what)->group(kFrame)->each([arguments](const std::string&) {

@@ -132,8 +132,8 @@ text::Assurance vouch(const Arguments& arguments, upload::Client& client, const 
   if (tick.mode != Mode::kActive || tick.fault != Fault::kNone || tick.holding || state.weight < 1 ||
       !all_axes)
     assurance.not_covered(
-        fmt::format("that the image is in effect: the board is in mode {}, fault {}{}, with {:.0f} "
-                    "% of the correction in",
+        fmt::format("whether the image is in effect: the board is in mode {}, fault {}{}, with {:.0f} % of "
+                    "the correction active",
                     name_of(tick.mode), name_of(tick.fault),
                     tick.holding ? ", on hold"
                     : all_axes   ? ""
@@ -163,7 +163,8 @@ void tell(const Arguments& arguments, upload::Client& client, const Done& done) 
   json["assurance"] = assurance.json();
   write_json(arguments.json, json);
   for (const text::AssuranceRule& rule : assurance.because())
-    if (!rule.ok) throw text::LimitNotMet("the board did not execute the request: " + rule.text);
+    if (!rule.ok)
+      throw text::LimitNotMet(fmt::format("the board did not execute the request: {}", rule.text));
 }
 
 void run(const Arguments& arguments) {
@@ -224,7 +225,8 @@ void register_upload(CLI::App& vernier) {
                    "new value of the board's security counter: the board never again accepts a correction "
                    "image with a lower value")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{UINT32_MAX}));
-  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->footer(
       "Exit status: 0 done, 1 bad input or no board, 2 the board refused the request (the message has the "
       "reason), another board answered (nothing was sent), or the board did not execute the request.");

@@ -86,7 +86,8 @@ void register_status(CLI::App& vernier) {
   CLI::App* const command = vernier.add_subcommand(
       "status", "Print the present state of a board: mode, axes, counters, correction image");
   add_board(command, arguments);
-  command->add_option("--json", arguments->json, "result for programs; - is standard output");
+  command->add_option("--json", arguments->json,
+                      "file for the result as JSON, for programs; - for standard output");
   command->callback([arguments] { status(*arguments); });
 }
 
@@ -102,7 +103,7 @@ void register_watch(CLI::App& vernier) {
       ->check(CLI::Range(0.0, 1e9));
   command
       ->add_option("--json", arguments->json,
-                   "output for programs; - writes one JSON object per line to standard output")
+                   "output file for programs; - writes one JSON object per line to standard output")
       ->check(CLI::IsMember({"-"}));
   command->callback([arguments] { watch(*arguments); });
 }

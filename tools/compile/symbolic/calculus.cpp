@@ -95,7 +95,7 @@ NodeId Derivative::make(NodeId id) {
     case NodeKind::kLess:
       return g_.constant(0);
     default:
-      throw std::domain_error("a direction of motion that changes in a step");
+      throw std::domain_error("the direction of motion changes in a step (by a comparison)");
   }
 }
 

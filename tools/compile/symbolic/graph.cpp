@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/compile/symbolic/graph.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -16,7 +18,8 @@ constexpr double kRoundOff = 1e-15;
 
 void check_domain(Function f, const Interval& x) {
   if ((f == Function::kLog || f == Function::kSqrt) && x.low <= 0)
-    throw std::domain_error(std::string(name_of(f)) + " of a value that can be zero or negative");
+    throw std::domain_error(
+        fmt::format("{} of a value that can be zero or negative", std::string(name_of(f))));
   if (f == Function::kReciprocal && x.contains(0))
     throw std::domain_error("division by a value that can reach zero");
   if (f == Function::kExp && x.high > 200) throw std::domain_error("exp of a value that can exceed 200");

@@ -27,8 +27,9 @@ std::string test_move(const ControllerTable& table, const std::string& mark, con
       "{0}measure {4}: its error changes by {5:.1f} um. With the table on, this change must be near 0 um. "
       "If\n"
       "{0}the change is near {6:.1f} um, {7}.\n",
-      mark, kLetters[table.input], table.position(std::min(a, b)), table.position(std::max(a, b)),
-      kLetters[table.output], -1000 * (table.forward[std::max(a, b)] - table.forward[std::min(a, b)]),
+      mark, kLetters[table.input], std::clamp(table.position(std::min(a, b)), table.low, table.high),
+      std::clamp(table.position(std::max(a, b)), table.low, table.high), kLetters[table.output],
+      -1000 * (table.forward[std::max(a, b)] - table.forward[std::min(a, b)]),
       -2000 * (table.forward[std::max(a, b)] - table.forward[std::min(a, b)]), reversed);
 }
 

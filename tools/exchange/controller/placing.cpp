@@ -231,7 +231,7 @@ class InputAxis {
   }
 
   ControllerTable table(std::size_t output, const Points& points, const Along& along) const {
-    ControllerTable result{input_, output, points.from, points.step, rules_.stairs, {}, {}};
+    ControllerTable result{input_, output, points.from, points.step, rules_.stairs, {}, {}, low_, high_};
     const auto values = rules_.stairs ? nearest_values : values_at;
     const Eigen::VectorXd forward = values(along, points, low_, high_, 1).row(static_cast<Index>(output)),
                           reverse = values(along, points, low_, high_, -1).row(static_cast<Index>(output));

@@ -19,6 +19,7 @@ struct ControllerTable {
   bool stairs = false;                // true: the nearest value is used; false: linear interpolation between
                                       // two values
   std::vector<double> forward, reverse;
+  double low = -1e9, high = 1e9;  // travel of the input axis, mm; the first and last point can be outside it
 
   double position(std::size_t point) const { return from + static_cast<double>(point) * step; }
   /// Returns the value at a position of the input axis. Outside the table, the first or last value is used.

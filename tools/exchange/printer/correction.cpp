@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/exchange/printer/correction.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -155,13 +157,15 @@ std::optional<Bed> bed_of(const model::Machine& machine, const ThreeAxes& axes, 
   if (name.empty() && planes.empty()) return std::nullopt;
   if (found == nullptr)
     throw text::InputError({machine.file, 0}, name,
-                           planes.empty() ? "the last fit of this machine has no rows that touch a plane"
-                                          : "the last fit has no plane of this name; its planes are " +
-                                                text::joined(names, ", "));
+                           planes.empty()
+                               ? "the last fit of this machine has no rows that touch a plane"
+                               : fmt::format("the last fit has no plane of this name; its planes are {}",
+                                             text::joined(names, ", ")));
   if (name.empty() && planes.size() > 1)
-    throw text::InputError({machine.file, 0}, "planes",
-                           "the last fit has several planes (" + text::joined(names, ", ") +
-                               "): name the bed with --bed, or none");
+    throw text::InputError(
+        {machine.file, 0}, "planes",
+        fmt::format("the last fit has several planes ({}): state the name of the bed with --bed, or none",
+                    text::joined(names, ", ")));
   Bed bed{found->name,
           {found->place_mm[0], found->place_mm[1], found->place_mm[2]},
           {found->normal[0], found->normal[1], found->normal[2]},

@@ -18,8 +18,8 @@ namespace vernier::fit {
 /// the domain.
 std::string domain_weight(const std::string& domain, const std::vector<std::string>& quantities);
 
-/// Name, value and unit of a hidden static of a new domain. The limits of a new domain are open (+-1e9) until
-/// a fit sets them.
+/// Name, value and unit of a hidden static of a new domain. The limits of a new domain are open
+/// (+-1e9) until a fit sets the limits.
 struct DomainStatic {
   std::string name, unit;
   double value = 0;
@@ -39,8 +39,9 @@ std::vector<DomainRange> domain_ranges(const model::Machine& machine);
 
 /// Returns the text of the machine file in which every open range has limits around the fit rows of a
 /// measurement. The limits of a range are the lowest and highest value of its quantity in the fit rows. The
-/// fade of a range is a tenth of the distance between its limits. If the quantity did not vary, the fade is a
-/// tenth of its value. A range whose limits are already set is not changed.
+/// fade of a range is a tenth of the distance between its limits. If the quantity of a range did
+/// not vary, the fade of the range is a tenth of the quantity's value. A range whose limits are
+/// already set is not changed.
 std::string close_domains(const std::string& text, const model::Machine& machine,
                           const model::Measurement& measurement);
 

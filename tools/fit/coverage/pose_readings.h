@@ -24,7 +24,8 @@ std::vector<SixReadings> complete_poses(const model::Measurement& measurement);
 /// Returns the six readings of a pose as a rigid motion.
 maths::RigidMotion motion_read(const model::Measurement& measurement, const SixReadings& pose);
 
-/// Replaces each complete pose by its inverse motion. `of_board` selects the kind of pose.
+/// Replaces each complete pose by its inverse motion. `of_board`: true selects the poses of a board
+/// in the camera frame; false selects the poses of the tool.
 void invert_poses(model::Measurement& measurement, bool of_board);
 
 }  // namespace vernier::fit

@@ -30,11 +30,12 @@ class Reach {
   const std::vector<std::string>& stale() const { return stale_; }
 
   /// Returns the covariance (mm^2) of the deviation at each state, in workpiece coordinates, under the
-  /// condition that the model is right. The covariance contains the uncertainty of the fit, and the errors
-  /// that the readings of the fit could not show (tools/fit/coverage/unmeasured.h). A rigid motion of the
-  /// whole machine is removed from the covariance. The removed rigid motion is the best fit over the measured
-  /// ranges with the present tool. A rigid motion of the whole machine belongs to the set-up; no correction
-  /// can remove it. Throws InputError if the chain is not finite.
+  /// condition that the model is right. The covariance of the deviation contains the uncertainty of
+  /// the fit, and the errors that the readings of the fit could not show
+  /// (tools/fit/coverage/unmeasured.h). A rigid motion of the whole machine is removed from the
+  /// covariance. The removed rigid motion is the best fit over the measured ranges with the present
+  /// tool. A rigid motion of the whole machine belongs to the set-up; no correction can remove it.
+  /// Throws InputError if the chain is not finite.
   std::vector<Eigen::Matrix3d> covariance(const model::States& states) const;
 
   /// Returns the root of the trace of covariance() at each state, um.
@@ -70,9 +71,10 @@ class Reach {
   /// parameters (n x k). The rigid motion of the whole machine is removed from the columns: 3 N x k elements,
   /// mm. With factor() as `change`, the result times its own transpose is the covariance of the tool point.
   Eigen::MatrixXd moved(const model::States& states, const Eigen::MatrixXd& change) const;
-  /// Returns the motion of the tool point by those properties of the model that no reading confirms. Each
-  /// column is one standard uncertainty of one property. The rigid motion of the whole machine is removed
-  /// from the columns: 3 N x e elements, mm.
+  /// Returns the motion of the tool point by those properties of the model that no reading
+  /// confirms. Each column is the motion of the tool point by one standard uncertainty of one
+  /// property of the model. The rigid motion of the whole machine is removed from the columns: 3 N
+  /// x e elements, mm.
   Eigen::MatrixXd moved_unmeasured(const model::States& states) const;
   /// Returns the same motion as moved_unmeasured(), including the rigid motion of the whole machine.
   Eigen::MatrixXd unmeasured(const model::States& states) const;

@@ -19,8 +19,8 @@ namespace vernier::fit {
 std::vector<bool> unseen_turns(const model::Machine& machine, const model::Measurement& rows,
                                const model::ParameterSet& parameters, double reach_mm);
 
-/// Standard uncertainty of a rotation that is fixed. The corresponding motion is 0.02 um at a distance of 1
-/// m, far below the uncertainty of any reading.
+/// Standard uncertainty of a set-up rotation that the fit holds fixed. A rotation by this
+/// uncertainty moves a point at 1 m by 0.02 um, far below the uncertainty of any reading.
 inline constexpr double kHeldTurn_deg = 1e-6;
 
 /// Fixes the parameters `held` at their values in `at`, with a standard uncertainty of a millionth of a

@@ -35,7 +35,7 @@ struct LevenbergOptions {
   std::function<double(double)> negligible = [](double cost) { return 1e-14 * cost; };
   /// Returns J^T W^2 p'' at a point for a step. The vector p'' is the second derivative of the predictions
   /// along the step. If `bend` is given, a step that fails is replaced by a step with geodesic acceleration.
-  /// If `bend` is not given, the step is straight.
+  /// If `bend` is not given, the steps of the solver have no geodesic acceleration.
   std::function<Eigen::VectorXd(const Eigen::VectorXd&, const Eigen::VectorXd&)> bend;
   /// If `slope` is given, the solver uses one factorisation of the normal equations for several steps (chord
   /// steps). Each chord step needs only the gradient, not a new normal matrix.

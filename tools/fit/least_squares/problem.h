@@ -37,13 +37,14 @@ class FitProblem {
   /// selects no parameter.
   void hold_unseen(std::vector<char> unseen) { unseen_ = std::move(unseen); }
 
-  /// Returns the cost: the sum of squared weighted residuals and of priors. The cost is infinity if the model
-  /// is undefined at the point.
+  /// Returns the cost: the sum of squared weighted residuals and of priors. The cost is infinity if
+  /// the model is undefined at the given parameter values.
   double cost(const Eigen::VectorXd& point) const;
-  /// Returns the normal equations at a point. Throws InputError if the model is undefined at the point.
+  /// Returns the normal equations at a point. Throws InputError if the model is undefined at the
+  /// given parameter values.
   NormalEquations equations(const Eigen::VectorXd& point) const;
-  /// Returns the cost and its gradient at a point, without the normal matrix. The cost is infinity if the
-  /// model is undefined at the point.
+  /// Returns the cost and its gradient at a point, without the normal matrix. The cost is infinity
+  /// if the model is undefined at the given parameter values.
   Slope slope(const Eigen::VectorXd& point) const;
   /// Returns J^T W^2 p''. The vector p'' is the second derivative of the predictions along `step`. bend()
   /// evaluates the model once more, at a part of the step. The result of bend() is zero if the model is
@@ -54,8 +55,8 @@ class FitProblem {
   Eigen::VectorXd weighted_residuals(const Eigen::VectorXd& point, model::SparseRows* jacobian) const;
 
   /// Returns the weighted derivatives of the readings by the unknown values of touched objects. Only values
-  /// that the readings determine better than their prior knowledge are included. The matrix is 0 x 0 if there
-  /// are no touched objects.
+  /// that the readings determine better than their prior knowledge are included. The matrix of
+  /// derivatives is 0 x 0 if there are no touched objects.
   Eigen::MatrixXd things_jacobian(const Eigen::VectorXd& point) const;
   /// Returns the derivatives of the known values of touched objects by the parameters, times 1/u; 0 x 0 if no
   /// value is known.

@@ -9,11 +9,23 @@
 
 namespace vernier::fit {
 
+namespace {
+
+/// Appends where the machine was in a row, and what it touched.
+void add_pose(const model::Measurement& m, std::size_t row, std::vector<double>& key) {
+  for (std::size_t i = 0; i < m.states.axis.size(); ++i)
+    key.push_back(model::commanded(m, i, static_cast<Eigen::Index>(row)));
+  if (!m.thing.empty()) key.push_back(static_cast<double>(m.thing[row]));
+}
+
+}  // namespace
+
 std::vector<double> row_conditions(const model::Measurement& m, std::size_t row) {
   const auto at = static_cast<Eigen::Index>(row);
   const model::States& s = m.states;
   std::vector<double> key;
-  for (std::size_t i = 0; i < s.axis.size(); ++i) key.push_back(model::commanded(m, i, at));
+  add_pose(m, row, key);
+  key.push_back(static_cast<double>(s.of(s.setup, row)));
   for (const auto* columns : {&s.velocity, &s.acceleration, &s.direction, &s.since, &s.input})
     for (const model::Column& column : *columns) key.push_back(column[at]);
   for (const model::Column& normal : s.normal) key.push_back(normal[at]);
@@ -21,7 +33,9 @@ std::vector<double> row_conditions(const model::Measurement& m, std::size_t row)
     key.push_back(std::isnan(m.centre(k, at)) ? 0 : m.centre(k, at));
     key.push_back(std::isnan(m.nominal_point(k, at)) ? 0 : m.nominal_point(k, at));
   }
-  if (!m.thing.empty()) key.push_back(static_cast<double>(m.thing[row]));
+  for (Eigen::Index k = 0; m.direction.cols() > 0 && k < 3; ++k)
+    key.push_back(std::isnan(m.direction(k, at)) ? 0 : m.direction(k, at));
+  if (!m.other_end.empty() && m.other_end[row] != model::kNoRow) add_pose(m, m.other_end[row], key);
   key.push_back(s.feed[at]);
   key.push_back(s.curvature[at]);
   for (const model::CandidateInput& candidate : m.candidates)

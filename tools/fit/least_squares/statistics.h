@@ -24,9 +24,10 @@ Eigen::VectorXd residuals(const model::Machine& machine, const model::Measuremen
 /// false selects the fit rows.
 RoleStatistics role_statistics(const model::Measurement& m, const Eigen::VectorXd& residual, bool check);
 
-/// Returns all values of a row that were set or logged, except time and the measured values. Rows with equal
-/// conditions are repeats of one measurement. The conditions do not include the correction of a board,
-/// because a residual does not contain this correction.
+/// Returns all values of a row that were set or logged, except time and the measured values. The result also
+/// has the set-up of the instrument, the direction of the reading, and the pose at the other end of a
+/// distance. Rows with equal conditions are repeats of one measurement. The conditions do not include the
+/// correction of a board, because a residual does not contain this correction.
 std::vector<double> row_conditions(const model::Measurement& m, std::size_t row);
 
 /// Returns the noise of the length readings, um: the rms of the standard uncertainty u over the fit rows. If

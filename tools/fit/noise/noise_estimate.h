@@ -15,7 +15,8 @@ inline constexpr double kMostNoiseProducts = 6e7;
 /// which accounts for the fitted columns. `residual`: the weighted residual; large values are first limited
 /// to a few robust standard deviations. `fitted`: orthonormal columns that were fitted to the readings. A
 /// noise component is included if -2 log likelihood decreases by more than chance explains. `with_u`: true if
-/// u is given. The standard deviation of all components together is then at least 1.
+/// u is given. If u is given, the standard deviation of all noise components together is at least 1
+/// (in units of u).
 NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                           const Eigen::MatrixXd& fitted, bool with_u, const NoiseThresholds& limits = {});
 

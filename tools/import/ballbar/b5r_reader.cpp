@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/import/ballbar/b5r_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -86,7 +88,8 @@ class B5rReader {
     const double value = number(node);
     if (value < 0 || value != std::floor(value) || value >= static_cast<double>(count)) {
       fail(node, text::trimmed(node.text().get()),
-           std::string(node.name()) + " is not an index of the " + std::to_string(count) + " readings");
+           fmt::format("{} is not an index of the {} readings", std::string(node.name()),
+                       std::to_string(count)));
     }
     return static_cast<std::size_t>(value);
   }
@@ -122,7 +125,7 @@ class B5rReader {
     const pugi::xml_node plane = need(bar, "PLANE");
     const std::string view = plane.attribute("VIEW").value();
     // Seen from another side, counter-clockwise would not be from +A towards +B; no such file is decoded.
-    if (view != "+A+B") fail(plane, view, "the command can read only the view +A+B");
+    if (view != "+A+B") fail(plane, view, "the command can read only ball-bar files with the view +A+B");
     file.axis_a = text::trimmed(need(plane, "A_AXIS_NAME").text().get());
     file.axis_b = text::trimmed(need(plane, "B_AXIS_NAME").text().get());
     const auto is_linear = [](const std::string& axis) { return axis == "X" || axis == "Y" || axis == "Z"; };
@@ -141,7 +144,8 @@ class B5rReader {
            "the angle must be 0 to 360 deg beyond START_ANGLE");
     if (arc_deg < 360)
       file.notes.push_back(
-          "partial arc: the import assumes that the samples START..END are the arc START_ANGLE..END_ANGLE");
+          "partial arc: the import assumes that the samples from START to END cover the arc from START_ANGLE "
+          "to END_ANGLE");
   }
 
   BallbarRun read_run(const pugi::xml_node& bar, const pugi::xml_node& node) const {

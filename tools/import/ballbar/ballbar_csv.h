@@ -23,8 +23,8 @@ struct BallbarCsv {
 
 /// Writes ball-bar files as one measurement file (CSV). The columns of the file are positions, motion, clock,
 /// the length with its centre, run and role. Samples from `start` to `end` of a run have the role `fit`.
-/// Samples before and after this arc have the role `check`. An axis has a column if the plane of at least one
-/// file contains the axis.
+/// Samples before and after the arc `start`..`end` of a run have the role `check`. An axis has a
+/// column if the plane of at least one file contains the axis.
 BallbarCsv ballbar_csv(const std::vector<BallbarFile>& files, const BallbarCsvOptions& options);
 
 }  // namespace vernier::importer

@@ -55,7 +55,8 @@ struct CircularResult {
   std::optional<AboutMean> about_mean;
   /// Mean of the radii of both directions minus the nominal radius (ISO 230-4:2005). For the mean
   /// bidirectional radial deviation, each radius is that of the least-squares circle with exact distances.
-  /// The other values use a linearised circle, which omits the term eccentricity squared over four radii.
+  /// All results except the mean bidirectional radial deviation use a linearised circle, which
+  /// omits the term eccentricity squared over four radii.
   std::optional<double> mean_bidirectional_radial_um;
   std::optional<Hysteresis> hysteresis;  // compares sample i of one direction with sample i from the end of
                                          // the other direction

@@ -97,7 +97,7 @@ nlohmann::json parse_json(const std::string& path, std::string_view text) {
     const std::string what = error.what();
     const std::size_t open = what.find('\''), close = what.rfind('\'');
     const std::string word = open < close ? what.substr(open + 1, close - open - 1) : "";
-    throw text::InputError({path, text::line_of(text, text.find(word))}, word, "a number that is too large");
+    throw text::InputError({path, text::line_of(text, text.find(word))}, word, "this number is too large");
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t at = std::min(error.byte == 0 ? 0 : error.byte - 1, text.size());
     std::size_t begin = at;

@@ -24,7 +24,8 @@ class TraceReader {
     if (!document.is_object()) fail("", "a trace file must be a JSON object");
     const std::string units = text_at(document, "ErrorUnits", "");
     if (units.empty()) fail("", "the file has no ErrorUnits");
-    if (units != "millimetres") fail("/ErrorUnits", "the command can read only millimetres");
+    if (units != "millimetres")
+      fail("/ErrorUnits", "the command can read only files with lengths in millimetres");
     BallbarFile file;
     file.path = path_;
     file.instrument = text_at(document, "BallbarModel", "");

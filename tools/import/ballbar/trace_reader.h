@@ -29,9 +29,10 @@ struct TraceCircle {
 /// Reads the files of a test whose path has several circles about one centre (XY, YZ, ZX), one after another.
 /// The result of read_trace_circles() has one BallbarFile per circle. The runs of all files are assigned to
 /// the circles; both keep their order. Each circle has the same number of runs (two if both directions of a
-/// circle follow each other). The plane is the label of the runs. If there is only one circle, each file
-/// gives one BallbarFile with all runs of the file. Throws InputError if the number of runs is not a multiple
-/// of the number of circles, and for all errors of read_ballbar_trace.
+/// circle follow each other). The label of each run is the plane of its circle, for example "YZ".
+/// If there is only one circle, each file gives one BallbarFile with all runs of the file. Throws
+/// InputError if the number of runs is not a multiple of the number of circles, and for all errors
+/// of read_ballbar_trace.
 std::vector<BallbarFile> read_trace_circles(const std::vector<std::string>& paths, const TraceSetup& setup,
                                             const std::vector<TraceCircle>& circles);
 

@@ -38,7 +38,7 @@ std::size_t count_in(const text::Place& place, std::string_view word) {
   constexpr std::size_t kMost = 1000;  // of a row or column of a mesh
   const auto value = text::parse_count(text::trimmed(word));
   if (!value || *value < 1 || *value > kMost)
-    throw text::InputError(place, std::string(word), "not a number of points from 1 to 1000");
+    throw text::InputError(place, std::string(word), "the number of points must be from 1 to 1000");
   return *value;
 }
 
@@ -276,7 +276,8 @@ HeightMapGrid grid_of(const text::Place& place, const std::string& labels, const
 void add_height_map(const std::string& text, const std::string& file, const std::array<double, 2>& offset,
                     PrinterFile& result, std::vector<Touch>& touches) {
   const std::vector<std::string> lines = text::parts_of(text, '\n');
-  if (lines.size() < 3) throw text::InputError({file, 1}, "height map", "the file ends after its title");
+  if (lines.size() < 3)
+    throw text::InputError({file, 1}, "height map", "the file ends after the title line of the height map");
   const HeightMapGrid grid = grid_of({file, 3}, lines[1], lines[2]);
   if (lines.size() < 3 + grid.count[1])
     throw text::InputError(
@@ -479,11 +480,14 @@ class ProbeLog {
     if (!options_.series)
       throw text::InputError(
           {file_, touches_[series_[0]].line}, "touches",
-          "the log has several surveys of the bed, which may differ: " + list + "; choose one with --series");
+          fmt::format(
+              "the log has several surveys of the bed, which may differ: {}; choose one with --series",
+              list));
     if (*options_.series < 1 || *options_.series > series_.size())
-      throw text::InputError({file_, 0}, std::to_string(*options_.series),
-                             "the log has no survey of this number: the surveys of the bed are " +
-                                 (list.empty() ? "none" : list));
+      throw text::InputError(
+          {file_, 0}, std::to_string(*options_.series),
+          fmt::format("the log has no survey of this number: the surveys of the bed are {}",
+                      list.empty() ? "none" : list));
     const std::size_t k = *options_.series - 1, first = begin_of(k);
     return {touches_.begin() + static_cast<std::ptrdiff_t>(first),
             touches_.begin() + static_cast<std::ptrdiff_t>(series_[k])};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/import/tables/column_guess.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <set>
@@ -150,8 +152,9 @@ SheetColumn Guess::column(const sheet::Heading& heading) const {
       column.name = *reading;
     } else {
       column.use = SheetColumn::Use::kLeft;
-      column.why = "no reading of a measurement file is along " + axis +
-                   ": state which one this is, --column \"x=" + heading.text + "\"";
+      column.why = fmt::format(
+          "no reading of a measurement file is along {}: state which one this is, --column \"x={}\"", axis,
+          heading.text);
     }
     return column;
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/import/tables/column_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <optional>
@@ -88,7 +90,7 @@ std::size_t source_index(const DelimitedFile& file, const MappedColumn& column) 
     if (*number >= 1 && *number <= width) return *number - 1;
     throw text::InputError(
         column.place.file.empty() ? text::Place{file.file, file.line.front()} : column.place, column.source,
-        "this column does not exist: the rows have " + std::to_string(width) + " columns");
+        fmt::format("this column does not exist: the rows have {} columns", std::to_string(width)));
   }
   const auto found = std::find(file.header.begin(), file.header.end(), column.source);
   if (found == file.header.end())
@@ -106,9 +108,11 @@ void refuse_another_unit(const DelimitedFile& file, std::size_t index, const Map
   if (heading.text.find_first_of("[(<") == std::string::npos || heading.unit.empty() || column.unit.empty() ||
       heading.unit == column.unit)
     return;
-  throw text::InputError({file.file, file.header_line}, heading.text,
-                         "the table states the unit " + heading.unit + ", the assignment to " + column.name +
-                             " states " + column.unit + ": correct one of the two units");
+  throw text::InputError(
+      {file.file, file.header_line}, heading.text,
+      fmt::format(
+          "the table states the unit {}, the assignment to {} states {}: correct one of the two units",
+          heading.unit, column.name, column.unit));
 }
 
 std::string cell_of(const std::string& text, const MappedColumn& column, bool decimal_comma,
@@ -166,7 +170,8 @@ std::string constant_cell(const MappedColumn& column, bool decimal_comma) {
   if (comma && sign == sheet::DecimalSign::kEither)
     throw text::InputError(
         column.place, text,
-        "for " + column.name + ": a decimal comma or thousands? Write the number with a decimal point");
+        fmt::format("for {}: a decimal comma or thousands? Write the number with a decimal point",
+                    column.name));
   // A column without a unit that the format does not know may have words.
   if (column.unit.empty() && format::find_column(column.name) == nullptr) return text;
   throw text::InputError(column.place, text, "not a number, for " + column.name);
@@ -203,7 +208,7 @@ std::vector<double> ImportTable::numbers(const std::string& name) const {
   std::vector<double> result;
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (column.cells[i].empty())
-      throw text::InputError({file, line[i]}, "", "the row has an empty cell, for " + name);
+      throw text::InputError({file, line[i]}, "", fmt::format("the row has an empty cell, for {}", name));
     result.push_back(*text::parse_number(column.cells[i]) * unit.factor + unit.offset);
   }
   return result;

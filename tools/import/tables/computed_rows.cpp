@@ -133,8 +133,9 @@ void note_short_rows(sheet::Sheet& sheet, const sheet::SheetTable& table) {
     if (sheet.separator == ' ' && !are_words(sheet, table, cells, headings))
       throw text::InputError(
           {sheet.file, sheet.line[row]}, text::joined(sheet.rows[row], " ").substr(0, 40),
-          fmt::format("{} cells, the headings in line {} are {}; write - for a cell without a value", cells,
-                      sheet.line[table.heading_row], headings));
+          fmt::format(
+              "this row has {} cells, but line {} has {} headings; write - for a cell without a value", cells,
+              sheet.line[table.heading_row], headings));
     const std::string& first = table.headings[cells].text;
     sheet.notes.push_back(fmt::format(
         "line {}: {} cells, {} headings: no value for {}", sheet.line[row], cells, headings,

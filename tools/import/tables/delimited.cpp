@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/import/tables/delimited.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "tools/text/csv.h"
@@ -82,7 +84,8 @@ DelimitedFile parse_delimited(const std::string& text, const std::string& file,
     if (fields.size() != wanted)
       throw text::InputError(
           place, bare.substr(0, 40),
-          std::to_string(fields.size()) + " fields where the lines above have " + std::to_string(wanted));
+          fmt::format("{} fields in this row; the number of fields in the rows above is {}", fields.size(),
+                      std::to_string(wanted)));
     result.rows.push_back(std::move(fields));
     result.line.push_back(place.line);
   }

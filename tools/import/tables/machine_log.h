@@ -28,7 +28,8 @@ struct LoggedTable {
 /// the clock of the tracker is known). The assigned values are those of the dwell in which the point was
 /// measured: the mean of numbers, the first word of a label column, and `t` by the clock of the log. `text`:
 /// the log as CSV with columns of the measurement format. The log must contain `t` and every axis of the
-/// machine, in time order. If the log is not valid, throws InputError with file, line and word.
+/// machine, in time order. If the log of the machine is not valid, throws InputError with file,
+/// line and word.
 LoggedTable with_log(const ImportTable& tracker, const std::string& text, const std::string& log_file,
                      const model::Machine& machine, const LogOptions& options);
 

@@ -269,17 +269,19 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     if (deviation && !axes.contains(column.name) && alone_measured.contains(column.name))
       column.to_target = true;
     else if (deviation && !column.name.empty() && !positions.contains(column.name) && !axes.empty())
-      leave(column, "the table has no position of " + column.name +
-                        ": state the position, for example --set \"" + column.name + "[mm]=0\"");
+      leave(column,
+            fmt::format("the table has no position of {}: state the position, for example --set \"{}[mm]=0\"",
+                        column.name, column.name));
     else if (deviation && (column.name.empty() || !positions.contains(column.name)))
       leave(column, "the axis of this deviation is not known: state the axis, --deviation \"X=" +
                         table.headings[k].text + "\"");
     else if (deviation && !reading_of(column.name))
-      leave(column, "no reading of a measurement file is along " + column.name +
-                        ": state the axis that it is parallel to, --deviation \"X=" + table.headings[k].text +
-                        "\"");
+      leave(column, fmt::format("no reading of a measurement file is along {}: state the axis that it is "
+                                "parallel to, --deviation \"X={}\"",
+                                column.name, table.headings[k].text));
     else if (deviation && measured.contains(*reading_of(column.name)))
-      leave(column, "the measured position is there as " + *reading_of(column.name));
+      leave(column, fmt::format("the table already has the measured position, as the column {}",
+                                *reading_of(column.name)));
     else if (column.name == kSensePrefix && moved.size() == 1)
       column.name = format::axis_column(format::AxisQuantity::kSense, *moved.begin());
     else if (column.name == kSensePrefix)
@@ -306,10 +308,10 @@ void keep_names_apart(const sheet::SheetTable& table, std::vector<SheetColumn>& 
     const bool plain = column.why == "by its heading";
     SheetColumn& one = plain ? column : columns[first->second];
     if (!plain) first->second = k;
-    leave(one, "column " + std::to_string(first->second + 1) + " (\"" + table.headings[first->second].text +
-                   "\") is " + column.name + " already; to read this one: --leave " +
-                   std::to_string(first->second + 1) + ", or another name: --column \"NAME[unit]=" +
-                   std::to_string((&one - columns.data()) + 1) + "\"");
+    leave(one, fmt::format("column {} (\"{}\") is already read as {}; to read this column instead: --leave "
+                           "{}, or another name: --column \"NAME[unit]={}\"",
+                           std::to_string(first->second + 1), table.headings[first->second].text, column.name,
+                           std::to_string(first->second + 1), std::to_string((&one - columns.data()) + 1)));
   }
 }
 

@@ -24,7 +24,7 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   if (!words.separator.empty()) wishes.format.separator = separator_of(words.separator);
   if (!words.decimal.empty()) {
     if (words.decimal != "comma" && words.decimal != "point")
-      throw text::InputError("\"" + words.decimal + "\": a decimal sign is comma or point");
+      throw text::InputError(fmt::format("\"{}\": a decimal sign is comma or point", words.decimal));
     wishes.format.decimal_comma = words.decimal == "comma";
   }
   if (!words.comment.empty()) wishes.format.comment = words.comment == "none" ? "" : words.comment;
@@ -191,11 +191,11 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
 
 std::string how_read(const sheet::Sheet& sheet) {
   const std::string doubt =
-      sheet.decimal_doubtful ? " (it could separate thousands as well: give --decimal)" : "";
+      sheet.decimal_doubtful ? " (the sign could also separate thousands: give --decimal)" : "";
   if (sheet.workbook)
     return "workbook, sheet \"" + sheet.sheet + "\"" +
            (sheet.sheets.size() > 1 ? " of " + text::joined(sheet.sheets, ", ") : "") +
-           (sheet.decimal_comma ? ", numbers stored as text have a decimal comma" + doubt : "");
+           (sheet.decimal_comma ? fmt::format(", numbers stored as text have a decimal comma{}", doubt) : "");
   return fmt::format("{}, columns separated by {}, decimal {}{}", sheet::encoding_name(sheet.encoding),
                      sheet::separator_word(sheet.separator), sheet.decimal_comma ? "comma" : "point", doubt);
 }
@@ -207,9 +207,9 @@ std::string becomes(const SheetColumn& column) {
       return column.name + unit + (column.words ? " (words)" : "");
     case SheetColumn::Use::kDeviation:
       if (column.to_target)
-        return fmt::format("target of {}: position {} this, {}", column.name, column.turned ? "+" : "-",
-                           unit);
-      return fmt::format("position of {} {} this, {}", column.name, column.turned ? "-" : "+", unit);
+        return fmt::format("target of {}: position {} this column, {}", column.name,
+                           column.turned ? "+" : "-", unit);
+      return fmt::format("position of {} {} this column, {}", column.name, column.turned ? "-" : "+", unit);
     case SheetColumn::Use::kLeft:
       return "left out";
   }

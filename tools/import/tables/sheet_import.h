@@ -32,9 +32,9 @@ struct SheetReading {
   std::size_t runs = 0;  // number of columns that were joined because each was one run (unfold_runs)
 };
 
-/// Reads a spreadsheet from text or from a workbook. `wishes`: the settings of a profile. Options in `words`
-/// have priority over these settings. If the spreadsheet is not valid, throws InputError with file, line and
-/// word.
+/// Reads a spreadsheet from text or from a workbook. `wishes`: the settings of a profile. Options
+/// in `words` have priority over the settings of the profile. If the spreadsheet is not valid,
+/// throws InputError with file, line and word.
 SheetReading read_as_sheet(const std::string& bytes, const std::string& file, const SheetWords& words,
                            SheetWishes wishes = {});
 

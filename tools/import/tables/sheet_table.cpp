@@ -232,8 +232,9 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
     if (!wants_unit(column) || !column.unit.empty() || (!deviation && !geometry)) continue;
     if (const std::string& unknown = table.headings[k].unknown_unit; !unknown.empty())
       throw text::InputError(heading, table.headings[k].text,
-                             "[" + unknown + "] is no known unit; known are " + format::known_units() +
-                                 "; convert the values to one of these units, and correct the heading");
+                             fmt::format("[{}] is no known unit; known are {}; convert the values to one of "
+                                         "these units, and correct the heading",
+                                         unknown, format::known_units()));
     const double largest = largest_value(sheet, table, k);
     const std::string unit =
         deviation ? unit_of_deviation(columns, column.name, largest) : unit_to_say(column.name, columns);
@@ -245,10 +246,10 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
   }
   if (without.empty()) return;
   const bool one = units.size() == 1 && (doubt.empty() || !other_than_deviation);
-  throw text::InputError(heading, "",
-                         "no unit: give it for " +
-                             (one ? "all (--unit " + *units.begin() + ") or for " : "") + "each, such as" +
-                             without + doubt);
+  throw text::InputError(
+      heading, "",
+      fmt::format("no unit: give it for {}each, such as{}{}",
+                  one ? fmt::format("all (--unit {}) or for ", *units.begin()) : "", without, doubt));
 }
 
 /// The headings of readings whose cells are all empty: a template that was not filled in.
@@ -285,8 +286,9 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
   if (const auto number = sheet::plain_number(cell, sheet.decimal_comma)) return *number;
   if (sheet::is_date(cell))
     throw text::InputError(place, cell,
-                           "a date or a time of day, not a number, for " + column.name +
-                               "; give the cells of this column the number format of the spreadsheet");
+                           fmt::format("a date or a time of day, not a number, for {}; give the cells of "
+                                       "this column the number format of the spreadsheet",
+                                       column.name));
   if (const auto both = sheet::number_and_unit(cell, sheet.decimal_comma))
     throw text::InputError(place, cell,
                            fmt::format("a number with the unit {}, for {}; write the unit in the heading "
@@ -294,7 +296,7 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
                                        both->second, column.name, both->second));
   if (sheet::plain_number(cell, !sheet.decimal_comma))
     throw text::InputError(place, cell,
-                           "not a number, for " + column.name + ": " + other_decimal_sign(sheet));
+                           fmt::format("not a number, for {}: {}", column.name, other_decimal_sign(sheet)));
   throw text::InputError(place, cell,
                          "not a number, for " + column.name +
                              "; write - in a cell without a value, or leave the column out (--leave)");
@@ -322,15 +324,17 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   refuse_unclear_signs(columns);
   refuse_without_units(sheet, table, columns, readings, guess);
   if (const std::string empty = measured ? "" : empty_readings(table, columns); !empty.empty())
-    throw text::InputError(heading, "",
-                           "the columns of readings are empty (" + empty +
-                               "): fill in the readings, then import the table again");
+    throw text::InputError(
+        heading, "",
+        fmt::format(
+            "the columns of readings are empty ({}): fill in the readings, then import the table again",
+            empty));
   if (!measured)
-    throw text::InputError(heading, "",
-                           "no column of the table is a reading (" + format::reading_column_names() +
-                               ", or a deviation of an axis): assign one, such as " +
-                               assignments_to_try(table, columns, guess) +
-                               "; --preview shows the meaning of each column");
+    throw text::InputError(
+        heading, "",
+        fmt::format("no column of the table is a reading ({}, or a deviation of an axis): assign one, such "
+                    "as {}; --preview shows the meaning of each column",
+                    format::reading_column_names(), assignments_to_try(table, columns, guess)));
   for (std::size_t k = 0; k < columns.size(); ++k)
     check_quantity(columns[k], guess, table.headings[k].text, heading);
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
@@ -340,10 +344,9 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   }
   const auto twice = [&](std::size_t k, const std::string& name) {
     throw text::InputError(heading, table.headings[k].text,
-                           "this would be " + name +
-                               " a second time; leave one of the two columns out, such as "
-                               "--leave " +
-                               std::to_string(k + 1));
+                           fmt::format("this column and another column both have the meaning {}; leave out "
+                                       "one of the two columns, for example --leave {}",
+                                       name, std::to_string(k + 1)));
   };
   std::set<std::string> names;
   std::map<std::string, std::size_t> axis_column;
@@ -372,7 +375,8 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
     if (deviation && !moves && still == wishes.constants.end())
       throw text::InputError(
           heading, column.name,
-          "this axis has no column: state its position, for example --set \"" + column.name + "[mm]=0\"");
+          fmt::format("this axis has no column: state its position, for example --set \"{}[mm]=0\"",
+                      column.name));
     if (deviation && is_angle(position_unit)) {
       made.name = angle_of(column.name, heading);
       made.unit = "deg";
@@ -399,9 +403,11 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
         if (at.empty())
           throw text::InputError(
               {sheet.file, sheet.line[row]}, column.name,
-              "a deviation without its position: the cell of \"" + table.headings[base].text +
-                  "\" is empty; if the value above it applies, give --fill \"" + table.headings[base].text +
-                  "\"; if the row is no measurement (a mean, a sum), delete the row");
+              fmt::format(
+                  "the cell of the position is empty in a row with a deviation; if the value above it "
+                  "applies, give --fill \"{}\"; if the row is no measurement (a mean, a sum), delete the "
+                  "row",
+                  table.headings[base].text));
         // Nine decimals are below every instrument: adding leaves no tail of binary digits.
         text = text::fixed_text(mm(at, position_unit) + sign * mm(text, column.unit), 9);
       }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/import/tables/sheet_wishes.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <utility>
 
@@ -55,8 +57,8 @@ std::size_t find_heading(const sheet::SheetTable& table, const std::string& word
 void refuse_heading(const sheet::SheetTable& table, const std::string& option, const std::string& words) {
   std::string known;
   for (const sheet::Heading& heading : table.headings) known += (known.empty() ? "" : ", ") + heading.text;
-  throw text::InputError(option + " \"" + words +
-                         "\": the sheet has no column with this heading; its headings are " + known);
+  throw text::InputError(fmt::format(
+      "{} \"{}\": the sheet has no column with this heading; its headings are {}", option, words, known));
 }
 
 void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words) {
@@ -141,8 +143,8 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
 
 std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                           const std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
-  std::string text =
-      "# How tables like " + sheet.file + " are read: vernier import table FILE --profile THIS -o MEAS\n";
+  std::string text = fmt::format(
+      "# How tables like {} are read: vernier import table FILE --profile THIS -o MEAS\n", sheet.file);
   if (sheet.workbook && !wishes.format.sheet.empty()) text += "sheet = " + wishes.format.sheet + "\n";
   if (!sheet.workbook)
     text += std::string("separator = ") +
@@ -157,7 +159,7 @@ std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& ta
     const SheetColumn& column = columns[k];
     const std::string& heading = table.headings[k].text;
     if (column.by_values)
-      text += "# " + heading + ": position or deviation, by the values of each file\n";
+      text += fmt::format("# {}: position or deviation, by the values of each file\n", heading);
     else if (column.use == SheetColumn::Use::kLeft)
       text += "leave " + heading + "\n";
     else

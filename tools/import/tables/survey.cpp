@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/import/tables/survey.h"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -100,8 +101,9 @@ void normalise(const ImportTable& table, std::vector<Eigen::VectorXd>& values, c
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double length = values[i].norm();
     if (!(std::abs(length - 1) <= kLengthOff))
-      throw text::InputError({table.file, table.line[i]}, first_of(names),
-                             names + " is not a unit vector: its length is " + std::to_string(length));
+      throw text::InputError(
+          {table.file, table.line[i]}, first_of(names),
+          fmt::format("{} is not a unit vector: its length is {}", names, std::to_string(length)));
     values[i] /= length;
   }
 }

@@ -15,19 +15,21 @@ namespace vernier::importer {
 void finish_tracker(ImportTable& table);
 
 /// Converts a table with poses of a board from camera software to a measurement. The columns are x y z and an
-/// orientation in one of the forms of finish_tracker(). `on_tool` = true: the tool carries the camera. The
-/// columns become bx by bz brx bry brz, the pose of the board in the frame of the camera. `on_tool` = false:
-/// the tool carries the board, and the camera is fixed. The columns are x y z rx ry rz, as for a tracker.
-/// Throws InputError if the table has no complete position.
+/// orientation in one of the forms of finish_tracker(). `on_tool` = true: the tool carries the
+/// camera. If the tool carries the camera, the columns become bx by bz brx bry brz, the pose of the
+/// board in the camera frame. `on_tool` = false: the tool carries the board, and the camera is
+/// fixed. If the camera is fixed, the columns are x y z rx ry rz, as for a tracker. Throws
+/// InputError if the table has no complete position.
 void finish_camera(ImportTable& table, bool on_tool);
 
-/// Converts a table of touches of a probe to a measurement. A column d is imported as d. Without a column d,
-/// the reading is d = n * (m - p) with the recorded point mx my mz; then the normal nx ny nz (scaled to
-/// length 1, within 1e-3) and the nominal point px py pz are required. All points of the touches are in
-/// workpiece coordinates. `radius_mm`: radius of the stylus ball. The radius is not zero if the recorded
-/// point is the centre of the ball and the nominal point is on the surface. The nominal point is then moved
-/// along the normal by this radius, out of the surface. Throws InputError if a required column is missing or
-/// not valid.
+/// Converts a table of touches of a probe to a measurement. A column d (deviation along the normal)
+/// is imported without change. Without a column d, the reading is d = n * (m - p) with the recorded
+/// point mx my mz; then the normal nx ny nz (scaled to length 1, within 1e-3) and the nominal point
+/// px py pz are required. All points of the touches are in workpiece coordinates. `radius_mm`:
+/// radius of the stylus ball. The radius is not zero if the recorded point is the centre of the
+/// ball and the nominal point is on the surface. The nominal point is then moved along the normal
+/// by this radius, out of the surface. Throws InputError if a required column is missing or not
+/// valid.
 void finish_probe(ImportTable& table, double radius_mm);
 
 /// Assigns the role check to each row whose number is a multiple of `every`, and the role fit to the other

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/import/tables/wide_sheet.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <map>
@@ -260,8 +262,10 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   constexpr std::size_t kMostCells = 8u << 20;  // 64 MB of numbers
   const std::size_t width = others.size() + 3, data = sheet.rows.size() - table.first_data;
   if (data > kMostCells / width / runs.size())
-    throw text::InputError({sheet.file, sheet.line[table.heading_row]}, "",
-                           "too many rows, a row for each of " + std::to_string(runs.size()) + " runs");
+    throw text::InputError(
+        {sheet.file, sheet.line[table.heading_row]}, "",
+        fmt::format("the table has too many cells, because each row becomes one row for each of {} runs",
+                    runs.size()));
   // Runs of a survey without approach directions have none, and no column of directions.
   const bool directed =
       std::any_of(runs.begin(), runs.end(), [](const RunColumn& one) { return one.sense != 0; });

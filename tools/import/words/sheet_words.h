@@ -12,8 +12,8 @@ namespace vernier::importer {
 /// Returns the words of a heading; "X_ist" and "X-ist" have two words.
 std::vector<std::string> heading_words(const std::string& name);
 
-// Functions that return the meaning of a word in a heading. The word is in small letters, in one of the
-// languages that are usual in workshops.
+// Functions that return the meaning of a word in a heading. The word of a heading is in small
+// letters, in one of the languages that are usual in workshops.
 bool says_target(const std::string& word);
 bool says_measured(const std::string& word);
 /// True for a statistic that a spreadsheet computes from its readings (a mean or a standard deviation), for

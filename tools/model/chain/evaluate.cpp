@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/model/chain/evaluate.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "tools/maths/factors.h"
@@ -233,10 +235,10 @@ ValueAndSlopes Evaluator::lag(const ValueAndSlopes& input, const ValueAndSlopes&
     if (before < states_.count && tau.value[i] > 0) {
       const double dt = states_.time[at] - states_.time[from];
       if (dt < 0)
-        throw text::InputError("a term with lag requires rows in time order: t decreases from " +
-                               std::to_string(states_.time[from]) + " to " +
-                               std::to_string(states_.time[at]) + " s in run \"" +
-                               states_.names(states_.clock)[clock] + "\"");
+        throw text::InputError(fmt::format(
+            "a term with lag requires rows in time order: t decreases from {} to {} s in run \"{}\"",
+            std::to_string(states_.time[from]), std::to_string(states_.time[at]),
+            states_.names(states_.clock)[clock]));
       step = lag_step(dt / tau.value[i]);
       h_by_tau = -dt / (tau.value[i] * tau.value[i]);
     }

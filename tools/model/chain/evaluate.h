@@ -31,8 +31,9 @@ class Value {
 
 /// A value and its derivatives with respect to the quantities that a fit may change. Each derivative has a
 /// key, which identifies the parameter. The key of a static is its index. The key of a table value is
-/// statics.size() + axis * 6 + column. The weights of the stations are applied later, because they are equal
-/// for all columns. The key of a scale factor is statics.size() + 6 * axes.size() + axis.
+/// statics.size() + axis * 6 + column. The station weights of a table are applied later, because
+/// all columns of the table have the same weights. The key of a scale factor is statics.size() + 6
+/// * axes.size() + axis.
 struct ValueAndSlopes {
   Value value;
   std::vector<std::pair<std::size_t, Value>> by;

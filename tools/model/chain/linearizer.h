@@ -86,8 +86,8 @@ class Linearizer {
       const States& states = all_.measurement_.states;
       return set_ups_[states.of(states.setup, row)];
     }
-    /// Adds the group of six set-up parameters that begins at `slot`. If the parameters are fixed, no group
-    /// is added.
+    /// Adds the group of six set-up parameters that begins at `slot`. If the set-up parameters are
+    /// fixed, no group of parameters is added.
     void add_set_up(const std::vector<std::array<Eigen::Index, 6>>& parameters,
                     const std::vector<BaseShift>& shifts, const BaseShift* shift, Eigen::Index slot);
 

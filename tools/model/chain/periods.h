@@ -15,9 +15,10 @@ struct Detail {
                        // such term
   double station = 0;  // shortest distance between two stations of the axis' table; infinite if the axis has
                        // no table
-  /// Ranges of the axis in which expressions of other kinds (steps, narrow peaks) change quickly. In a range,
-  /// the errors are linear to 0.02 um or 2e-5 deg between positions at the distance `spacing`. Features
-  /// narrower than 1/262144 of the range of the axis are not found.
+  /// Ranges of the axis in which expressions of other kinds (steps, narrow peaks) change quickly.
+  /// In a range of quick change, the errors are linear to 0.02 um or 2e-5 deg between positions at
+  /// the distance `spacing`. Features narrower than 1/262144 of the range of the axis are not
+  /// found.
   struct Sharp {
     double from = 0, to = 0, spacing = 0;
   };

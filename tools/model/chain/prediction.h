@@ -32,8 +32,8 @@ struct Linearisation {
   Eigen::VectorXd predicted;
   SparseRows jacobian;
   /// Known values of touched objects minus their estimates, and the derivatives of the estimates by the
-  /// parameters. The differences and the derivatives are both multiplied by 1/u. Both members of the struct
-  /// are empty if no known value has an uncertainty.
+  /// parameters. The differences and the derivatives are both multiplied by 1/u. The differences
+  /// and the derivatives are empty if no known value of a touched object has an uncertainty.
   Eigen::VectorXd known_residual;
   Eigen::MatrixXd known_jacobian;
 };
@@ -41,7 +41,8 @@ Linearisation linearise(const Machine& machine, const Measurement& measurement,
                         const ParameterSet& parameters);
 
 /// Returns the prediction and its derivatives, like the other linearise(), with a Linearizer that is
-/// constructed once. The Linearizer contains the results that do not depend on the values of the parameters.
+/// constructed once. The Linearizer keeps intermediate results that do not depend on the values of
+/// the parameters.
 class Linearizer;
 Linearisation linearise(const Machine& machine, const Linearizer& linearizer, std::size_t observations,
                         std::size_t parameters);

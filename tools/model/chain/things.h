@@ -10,8 +10,8 @@
 
 namespace vernier::model {
 
-/// Returns the weight of a reading: 1/u, or 1 if u is absent. The residual of the reading is multiplied by
-/// this weight.
+/// Returns the weight of a reading: 1/u, or 1 if u is absent. The residual of a reading is
+/// multiplied by its weight.
 double weight_of(const Measurement& measurement, const Observation& observation);
 
 /// Derivative of one reading by the unknown values of one touched object.

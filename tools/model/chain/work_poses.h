@@ -18,9 +18,10 @@ struct WorkPoses {
 WorkPoses poses_over(const Machine& machine, const std::vector<std::array<double, 2>>& ranges);
 
 /// Returns poses in the working volume `<volume>`, or in the ranges of the axes if the file has no volume.
-/// The poses are a Halton sequence and are equal in every call. The first two poses are the two extreme
-/// corners of the range. The poses contain both approach directions of the axes. In all poses the axes are at
-/// rest, and the inputs have their reference values. Throws InputError for an axis without a range.
+/// The poses in the working volume are a Halton sequence and are equal in every call. The first two
+/// poses are at the lowest and at the highest corner of the working range. The poses contain both
+/// approach directions of the axes. In all poses the axes are at rest, and the inputs have their
+/// reference values. Throws InputError for an axis without a range.
 WorkPoses work_poses(const Machine& machine);
 
 }  // namespace vernier::model

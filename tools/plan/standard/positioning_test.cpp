@@ -160,7 +160,8 @@ PositioningTest positioning_test(const model::Machine& machine, const Positionin
   const double inside = machine.axes[test.axis].rollover ? 0 : test.overrun;
   const double from = options.from.value_or(range[0] + inside), to = options.to.value_or(range[1] - inside);
   if (!(to - from > 10 * kDigit))
-    throw text::InputError({}, options.axis, fmt::format("no travel is left from {:g} to {:g}", from, to));
+    throw text::InputError(
+        {}, options.axis, fmt::format("the range from {:g} to {:g} leaves no travel for the test", from, to));
   require_in_range(machine, test.axis, from - test.overrun, to + test.overrun);
   const std::size_t count = options.targets > 0 ? options.targets : required_targets(to - from, test.rotary);
   if (count < 2 || count > kMostTargets)

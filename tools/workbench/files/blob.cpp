@@ -6,7 +6,8 @@
 
 namespace vernier::workbench {
 
-static_assert(std::endian::native == std::endian::little, "arrays go out as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "arrays are written in the byte order of the memory, which must be little-endian");
 
 nlohmann::ordered_json Blob::add(const char* type, const void* data, std::size_t count, std::size_t size) {
   const std::size_t offset = arrays_.size();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/files/dimensions.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "tools/format/units.h"
@@ -167,7 +169,7 @@ class UnitWalk {
     const Unit tau = of(*expr.args[1]);
     double constant = 0;
     if (tau && !model::is_constant(*expr.args[1], constant) && *tau != UnitPowers{0, 0, 0, 1})
-      warnings_.push_back("the time constant of lag is in " + unit_text(*tau) + ", not in s");
+      warnings_.push_back(fmt::format("the time constant of lag is in {}, not in s", unit_text(*tau)));
     return of(*expr.args[0]);
   }
 

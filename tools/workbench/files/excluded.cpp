@@ -97,7 +97,8 @@ std::string restore_rows(const std::string& text, const std::string& file,
     return excluded->row;
   });
   if (restored != lines.size())
-    throw text::InputError({file, lines.back()}, std::to_string(lines.back()), "beyond the end of the file");
+    throw text::InputError({file, lines.back()}, std::to_string(lines.back()),
+                           "this line number is beyond the end of the file");
   format::parse_csv(result, file);  // tests that the output can be read
   return result;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/files/project.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -71,20 +73,21 @@ void refuse_special(const fs::path& path, const std::string& name) {
   std::error_code failed;
   const fs::file_status status = fs::symlink_status(path, failed);
   if (fs::is_symlink(status))
-    throw text::InputError("\"" + name + "\": a symbolic link, which the workbench does not follow");
+    throw text::InputError(fmt::format("\"{}\": a symbolic link, which the workbench does not follow", name));
   if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
-    throw text::InputError("\"" + name + "\": neither a file nor a folder");
+    throw text::InputError(fmt::format("\"{}\": neither a file nor a folder", name));
 }
 
 Project::Project(const std::string& directory) {
   std::error_code failed;
   root_ = fs::canonical(directory, failed);
-  if (failed || !fs::is_directory(root_)) throw text::InputError(directory + ": this folder does not exist");
+  if (failed || !fs::is_directory(root_))
+    throw text::InputError(fmt::format("{}: this folder does not exist", directory));
 }
 
 fs::path Project::checked(const std::string& name) const {
   if (!is_project_name(name))
-    throw text::InputError("\"" + name + "\": this name is not allowed for a file of a project");
+    throw text::InputError(fmt::format("\"{}\": this name is not allowed for a file of a project", name));
   fs::path path = root_;
   for (const fs::path& part : fs::path(name)) {
     path /= part;
@@ -97,7 +100,7 @@ fs::path Project::existing(const std::string& name) const {
   fs::path path = checked(name);
   std::error_code failed;
   if (!fs::is_regular_file(path, failed) && !fs::is_directory(path, failed))
-    throw text::InputError("\"" + name + "\": the project has no file of this name");
+    throw text::InputError(fmt::format("\"{}\": the project has no file of this name", name));
   return path;
 }
 

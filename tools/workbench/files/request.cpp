@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/files/request.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 
 #include "tools/text/error.h"
@@ -81,7 +83,7 @@ std::vector<std::string> texts_at(const nlohmann::json& json, const char* key) {
     throw text::InputError(std::string("\"") + key + "\": a list is missing");
   for (const auto& one : *found) {
     if (!one.is_string())
-      throw text::InputError(std::string("\"") + key + "\": contains a value that is not a text");
+      throw text::InputError(fmt::format("\"{}\": contains a value that is not a text", key));
     list.push_back(one.get<std::string>());
   }
   return list;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/files/sheets.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "tools/format/csv_file.h"
@@ -27,7 +29,7 @@ std::vector<std::string> list_or_none(const nlohmann::json& request, const char*
   std::vector<std::string> list;
   if (!found->is_array()) throw text::InputError(std::string("\"") + key + "\" must be a list");
   for (const nlohmann::json& one : *found) {
-    if (!one.is_string()) throw text::InputError(std::string("\"") + key + "\" must be a list of texts");
+    if (!one.is_string()) throw text::InputError(fmt::format("\"{}\" must be a list of texts", key));
     list.push_back(one.get<std::string>());
   }
   return list;

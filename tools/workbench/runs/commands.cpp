@@ -151,7 +151,7 @@ PlannedCommand CommandTable::plan(const nlohmann::json& request, const Project& 
   const auto found = std::find_if(std::begin(kAllowed), std::end(kAllowed),
                                   [&](const Allowed& one) { return one.name == name; });
   if (found == std::end(kAllowed))
-    throw text::InputError("\"" + name + "\": the workbench has no command of this name");
+    throw text::InputError(fmt::format("\"{}\": the workbench has no command of this name", name));
   PlannedCommand command{name, text::words_in(name, " "), {}, found->on_board, found->for_history};
   std::size_t known = 1;
   for (const Json& option : named(allowed_, name, "the table").at("options")) {
@@ -160,9 +160,10 @@ PlannedCommand CommandTable::plan(const nlohmann::json& request, const Project& 
     if (value != request.end() && !value->is_null())
       add_option(option, *value, project, command);
     else if (option.at("required").get<bool>())
-      refuse(option, "is missing in a request for " + name);
+      refuse(option, fmt::format("the option is missing in a request for the command {}", name));
   }
-  if (known != request.size()) throw text::InputError("the page must not give this option to " + name);
+  if (known != request.size())
+    throw text::InputError(fmt::format("the page must not give this option to {}", name));
   return command;
 }
 

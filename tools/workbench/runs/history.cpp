@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/runs/history.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "tools/text/error.h"
@@ -44,13 +46,14 @@ CommandHistory::CommandHistory(const Project& project) : project_(project) {
   if (std::error_code failed; !fs::exists(path, failed)) return;
   const std::string text = text::read_file(path.string());
   if (text::nests_deeper_than(text, text::kMostJsonDepth))
-    throw text::InputError(path.string() + ": the JSON of this file nests too deeply");
+    throw text::InputError(fmt::format("{}: the JSON of this file nests too deeply", path.string()));
   const auto read = nlohmann::ordered_json::parse(text, nullptr, false);
   if (!read.is_array())
-    throw text::InputError(path.string() + ": the file does not contain a list of commands");
+    throw text::InputError(fmt::format("{}: the file does not contain a list of commands", path.string()));
   for (const auto& entry : read)
     if (!is_entry(entry))
-      throw text::InputError(path.string() + ": the list of commands contains a value that is not a command");
+      throw text::InputError(
+          fmt::format("{}: the list of commands contains a value that is not a command", path.string()));
   entries_ = read;
 }
 

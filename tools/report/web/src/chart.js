@@ -43,9 +43,14 @@ export function colours() {
 }
 
 const named = (one) => (one && typeof one === 'object' && 'name' in one ? { ...one, name: t(one.name) } : one);
+/** Numbers of an axis without separators of thousands: "1,000" is one in German. */
+const axisNumber = (value) => (typeof value === 'number' ? String(Number(value.toPrecision(12))).replace('-', '−') : value);
 const axis = (one) => {
   const of = named(one);
-  return Array.isArray(of?.data) ? { ...of, data: of.data.map((text) => t(text)) } : of;
+  if (!of || typeof of !== 'object') return of;
+  if (Array.isArray(of.data)) return { ...of, data: of.data.map((text) => t(text)) };
+  const written = typeof of.axisLabel?.formatter === 'function' ? of.axisLabel.formatter : axisNumber;
+  return { ...of, axisLabel: { ...of.axisLabel, formatter: (...place) => t(String(written(...place))) } };
 };
 const each = (list, change) => (Array.isArray(list) ? list.map(change) : list && change(list));
 

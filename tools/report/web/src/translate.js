@@ -4,7 +4,7 @@
 
 const kNumber = '[+−-]?\\d[\\d.]*(?:e[+−-]?\\d+)?';
 const kNumbers = new RegExp(kNumber, 'g'),
-  kOnlyNumber = new RegExp(`^${kNumber}$`);
+  kOnlyNumber = new RegExp(`^${kNumber}( [%‰°]| [µu]?m|)$`);
 
 let exact = new Map(),
   patterns = [],

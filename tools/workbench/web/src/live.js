@@ -72,7 +72,7 @@ function runs(last) {
   const held = Object.entries(last.axes)
     .filter(([, axis]) => axis.saturated)
     .map(([name, axis]) => `${name} ${axis.limits}`);
-  return `${last.running} (${last.image}) runs for ${number(last.t - last.running_since_t, 4)} s, ${number(100 * last.weight, 3)} % of it in${held.length ? `; held: ${held.join('; ')}` : ''}`;
+  return `${last.running} (${last.image}) runs for ${number(last.t - last.running_since_t, 4)} s, ${number(100 * last.weight, 3)} % of the correction is active${held.length ? `; held: ${held.join('; ')}` : ''}`;
 }
 
 /** What a board does just now: corrections over time, what each effect adds, latency, faults; ten pictures a second or more. */
