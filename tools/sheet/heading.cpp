@@ -158,14 +158,15 @@ void refuse_rows_of_words(const Sheet& sheet) {
     number = *found;
   }
   if (2 * rows <= sheet.rows.size()) return;
-  throw text::InputError({sheet.file, sheet.line[first]}, text::joined(sheet.rows[first], "; ").substr(0, 40),
-                         "this row has one number (" + number + ") and " +
-                             std::to_string(sheet.rows[first].size() - 1) +
-                             " cells of words: a row of measured data needs the positions of the axes as "
-                             "numbers. If the words name "
-                             "points, add columns with the positions of the points (X[mm], Y[mm] and so on); "
-                             "for distances between "
-                             "points use the columns same, from and distance[mm] (tools/docs/touch.md)");
+  throw text::InputError(
+      {sheet.file, sheet.line[first]}, text::joined(sheet.rows[first], "; ").substr(0, 40),
+      fmt::format("this row has more words than numbers (number: {}): a row of measured data needs the "
+                  "positions of the "
+                  "axes as numbers. If the words name points, add columns with the positions of the points "
+                  "(X[mm], Y[mm] "
+                  "and so on); for distances between points use the columns same, from and distance[mm] "
+                  "(tools/docs/touch.md)",
+                  number));
 }
 
 /// No row of data: the message names the probable cause.

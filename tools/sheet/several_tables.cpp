@@ -68,7 +68,7 @@ void keep_table(Sheet& sheet, std::optional<std::size_t> number) {
                                        found));
   if (*number < 1 || *number > first.size())
     throw text::InputError({sheet.file, 0}, std::to_string(*number),
-                           "the file has no table of this number: it has " + found);
+                           fmt::format("the file has no table of this number: it has {}", found));
   // A title at the top of the file may state the sign of the deviations of all its tables.
   std::size_t data = 0;
   while (data < sheet.rows.size() && !is_row_of_data(sheet, data)) ++data;

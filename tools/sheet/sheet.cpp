@@ -87,8 +87,8 @@ std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std:
   }
   for (std::size_t k = 0; sheet != nullptr && k < numbered.size() && k < 5; ++k)
     sheet->notes.push_back(
-        "line " + std::to_string(numbered[k].number) + " begins with # and is left out: \"" +
-        text::trimmed(numbered[k].text).substr(0, 30) + "\"; is it a row? (--comment none)");
+        fmt::format("line {} begins with # and is left out: \"{}\"; is it a row? (--comment none)",
+                    std::to_string(numbered[k].number), text::trimmed(numbered[k].text).substr(0, 30)));
   return lines;
 }
 
@@ -235,17 +235,17 @@ void guess_decimal(Sheet& sheet) {
   if (point > 0 && comma > 0) {
     const bool few_commas = comma < point;
     const auto count = [](std::size_t cells) {
-      return std::to_string(cells) + (cells == 1 ? " cell" : " cells");
+      return fmt::format("{} {}", cells, cells == 1 ? "cell" : "cells");
     };
     throw text::InputError(
         few_commas ? at_comma : at_point, few_commas ? comma_word : point_word,
-        std::string("a decimal ") + (few_commas ? "comma" : "point") + " here, a decimal " +
-            (few_commas ? "point" : "comma") + " in line " +
-            std::to_string((few_commas ? at_point : at_comma).line) + " (" +
-            (few_commas ? point_word : comma_word) + "); " + count(comma) + " with a comma, " + count(point) +
-            " with a point: write all numbers of the file with one decimal sign (find and replace); "
-            "--decimal comma or "
-            "point helps only if the other cells are in columns that are left out (--leave)");
+        fmt::format(
+            "a decimal {} here, a decimal {} in line {} ({}); {} with a comma, {} with a point: write all "
+            "numbers of the file with one decimal sign (find and replace); --decimal comma or point helps "
+            "only if the other cells are in columns that are left out (--leave)",
+            few_commas ? "comma" : "point", few_commas ? "point" : "comma",
+            (few_commas ? at_point : at_comma).line, few_commas ? point_word : comma_word, count(comma),
+            count(point)));
   }
   // Where each sign could part thousands as well ("1,234") the one that is there is taken for the decimal
   // sign.
@@ -355,22 +355,22 @@ void refuse_document(const std::string& text, const std::string& file) {
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
   const std::string head = text::in_small_letters(text.substr(begin, 2000));
   const auto begins = [&](const char* with) { return head.starts_with(with); };
-  const std::string save =
-      ": open it in the spreadsheet program, save it as .xlsx or as CSV, and import that file";
-  const bool xml = begins("<?xml") || begins("<workbook");
-  if (xml && head.find("urn:schemas-microsoft-com:office:spreadsheet") != std::string::npos)
-    throw text::InputError({file, 1}, "", "a workbook as XML (XML Spreadsheet 2003)" + save);
-  if (begins("<!doctype html") || begins("<html") || begins("<table") || begins("<head") || begins("<meta") ||
-      (xml && head.find("<html") != std::string::npos))
+  const auto refuse = [&](const char* kind) {
     throw text::InputError(
         {file, 1}, "",
-        "a web page (HTML) with a table, as some programs save it with the ending .xls" + save);
-  if (begins("%pdf"))
-    throw text::InputError({file, 1}, "",
-                           "a document (PDF), not a table: export the table as .xlsx or as CSV");
-  if (begins("{\\rtf"))
-    throw text::InputError({file, 1}, "",
-                           "a text document (RTF), not a table: save the table as .xlsx or as CSV");
+        fmt::format(
+            "the file is {}: open it in the spreadsheet program, save it as .xlsx or as CSV, and import "
+            "the saved file",
+            kind));
+  };
+  const bool xml = begins("<?xml") || begins("<workbook");
+  if (xml && head.find("urn:schemas-microsoft-com:office:spreadsheet") != std::string::npos)
+    refuse("a workbook as XML (XML Spreadsheet 2003)");
+  if (begins("<!doctype html") || begins("<html") || begins("<table") || begins("<head") || begins("<meta") ||
+      (xml && head.find("<html") != std::string::npos))
+    refuse("a web page (HTML) with a table, which some programs save with the ending .xls");
+  if (begins("%pdf")) refuse("a document (PDF) and not a table");
+  if (begins("{\\rtf")) refuse("a text document (RTF) and not a table");
 }
 
 }  // namespace

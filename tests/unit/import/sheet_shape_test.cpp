@@ -122,8 +122,8 @@ TEST(SheetShape, DocumentsWithTheNameOfATableAreNamed) {
 
 TEST(SheetShape, ARowOfMoreWordsThanNumbersIsNamed) {
   EXPECT_THAT(read("von;nach;Abstand [mm]\nA;C;141,27\nB;D;141,69\n"),
-              HasSubstr("refused: s.csv:2: \"A; C; 141,27\": this row has one number (141,27) and 2 cells of "
-                        "words"));
+              HasSubstr("refused: s.csv:2: \"A; C; 141,27\": this row has more words than numbers (number: "
+                        "141,27): a row of measured data needs the positions of the axes as numbers"));
 }
 
 }  // namespace

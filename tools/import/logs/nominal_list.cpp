@@ -102,9 +102,9 @@ std::vector<std::size_t> rows_by_name(const ImportTable& points, const List& lis
         return rows;
       }
       if (same || 2 * found > column.cells.size())
-        throw text::InputError(
-            {points.file, points.line[missing]}, column.cells[missing],
-            "the list of nominal positions (" + list.reading.sheet.file + ") has no point of this name");
+        throw text::InputError({points.file, points.line[missing]}, column.cells[missing],
+                               fmt::format("the list of nominal positions ({}) has no point of this name",
+                                           list.reading.sheet.file));
     }
   }
   return {};

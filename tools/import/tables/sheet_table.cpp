@@ -232,8 +232,9 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
     if (!wants_unit(column) || !column.unit.empty() || (!deviation && !geometry)) continue;
     if (const std::string& unknown = table.headings[k].unknown_unit; !unknown.empty())
       throw text::InputError(heading, table.headings[k].text,
-                             "[" + unknown + "] is no known unit; known are " + format::known_units() +
-                                 "; convert the values to one of these units, and correct the heading");
+                             fmt::format("[{}] is no known unit; known are {}; convert the values to one of "
+                                         "these units, and correct the heading",
+                                         unknown, format::known_units()));
     const double largest = largest_value(sheet, table, k);
     const std::string unit =
         deviation ? unit_of_deviation(columns, column.name, largest) : unit_to_say(column.name, columns);
@@ -245,10 +246,10 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
   }
   if (without.empty()) return;
   const bool one = units.size() == 1 && (doubt.empty() || !other_than_deviation);
-  throw text::InputError(heading, "",
-                         "no unit: give it for " +
-                             (one ? "all (--unit " + *units.begin() + ") or for " : "") + "each, such as" +
-                             without + doubt);
+  throw text::InputError(
+      heading, "",
+      fmt::format("no unit: give it for {}each, such as{}{}",
+                  one ? fmt::format("all (--unit {}) or for ", *units.begin()) : "", without, doubt));
 }
 
 /// The headings of readings whose cells are all empty: a template that was not filled in.
@@ -295,7 +296,7 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
                                        both->second, column.name, both->second));
   if (sheet::plain_number(cell, !sheet.decimal_comma))
     throw text::InputError(place, cell,
-                           "not a number, for " + column.name + ": " + other_decimal_sign(sheet));
+                           fmt::format("not a number, for {}: {}", column.name, other_decimal_sign(sheet)));
   throw text::InputError(place, cell,
                          "not a number, for " + column.name +
                              "; write - in a cell without a value, or leave the column out (--leave)");
@@ -402,9 +403,11 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
         if (at.empty())
           throw text::InputError(
               {sheet.file, sheet.line[row]}, column.name,
-              "a deviation without its position: the cell of \"" + table.headings[base].text +
-                  "\" is empty; if the value above it applies, give --fill \"" + table.headings[base].text +
-                  "\"; if the row is no measurement (a mean, a sum), delete the row");
+              fmt::format(
+                  "the cell of the position is empty in a row with a deviation; if the value above it "
+                  "applies, give --fill \"{}\"; if the row is no measurement (a mean, a sum), delete the "
+                  "row",
+                  table.headings[base].text));
         // Nine decimals are below every instrument: adding leaves no tail of binary digits.
         text = text::fixed_text(mm(at, position_unit) + sign * mm(text, column.unit), 9);
       }

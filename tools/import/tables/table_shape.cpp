@@ -70,10 +70,11 @@ void refuse_transposed(const sheet::Sheet& sheet, const sheet::SheetTable& table
   if (labelled < 2 || 2 * labelled <= rows) return;
   throw text::InputError(
       {sheet.file, sheet.line[table.first_data]}, "",
-      "the first column has the headings (" + labels +
-          "), so each row of this table is a quantity, and the command reads quantities in "
-          "columns: transpose the table in the spreadsheet program (copy, paste special, "
-          "transpose), save it, and import it again");
+      fmt::format(
+          "the first column has the headings ({}), so each row of this table is a quantity, and the command "
+          "reads quantities in columns: transpose the table in the spreadsheet program (copy, paste "
+          "special, transpose), save it, and import it again",
+          labels));
 }
 
 void note_exchanged_headings(sheet::Sheet& sheet, const sheet::SheetTable& table,
