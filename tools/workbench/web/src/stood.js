@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
 import { freeName, run } from './api.js';
-import { button, guarded, panel } from './parts.js';
+import { button, gate, guarded, panel } from './parts.js';
 import { on, store } from './store.js';
 
 /** Columns that the refusal of rows asks for: [name[unit]]; the file that lacks them. */
@@ -43,7 +43,8 @@ export function stoodPanel(choose) {
       { id: 'stood-add' },
     );
     const ready = () => {
-      add.disabled = fields.some(([, input]) => !Number.isFinite(parseFloat(value(input))));
+      const open = fields.filter(([, input]) => !Number.isFinite(parseFloat(value(input)))).map(([column]) => column);
+      gate(add, open.length ? `State a number for ${open.join(', ')} first` : null);
     };
     for (const [, input] of fields) input.addEventListener('input', ready);
     ready();
