@@ -26,7 +26,7 @@ function outcome(box, { text }, files, words) {
   const lines = text.split('\n').filter((line) => line.trim() && !files.includes(line.trim()));
   box.replaceChildren(
     el('p', { class: 'verdict', role: 'status' }, words),
-    lines.length ? el('pre', { class: 'source' }, lines.join('\n')) : '',
+    lines.length ? el('pre', { class: 'source wrap' }, lines.join('\n')) : '',
     el(
       'ul',
       { class: 'files' },

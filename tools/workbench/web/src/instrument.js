@@ -21,7 +21,7 @@ export async function importInstrument(box, kind, name, done) {
         panel(
           null,
           el('p', { id: 'imported' }, `${name}: read into `, el('strong', {}, output), '.'),
-          el('pre', { class: 'source' }, text.trim()),
+          el('pre', { class: 'source wrap' }, text.trim()),
           button('Read it differently', ask, { class: 'quiet', id: 'read-differently' }),
         ),
       );

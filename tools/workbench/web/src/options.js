@@ -42,17 +42,18 @@ function input(one) {
     );
     return { node, value: () => (node.value ? (number ? Number(node.value) : node.value) : undefined) };
   }
-  const limits = number ? { min: one.low ?? (one.kind === 'count' ? 0 : null), max: one.high, step: one.kind === 'count' ? 1 : 'any' } : {};
+  const single = number && !one.list;
+  const limits = single ? { min: one.low ?? (one.kind === 'count' ? 0 : null), max: one.high, step: one.kind === 'count' ? 1 : 'any' } : {};
   const files = one.kind.startsWith('reads') ? { list: 'files-of-project' } : {};
   const node = el('input', {
     ...common,
     ...limits,
     ...files,
-    type: number ? 'number' : 'text',
+    type: single ? 'number' : 'text',
     placeholder: one.default,
     spellcheck: 'false',
   });
-  const read = (word) => (number ? Number(word) : word);
+  const read = (word) => (number ? Number(word.replace(',', '.')) : word);
   return {
     node,
     value: () => {
