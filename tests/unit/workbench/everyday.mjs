@@ -174,9 +174,12 @@ async function shop(page) {
   await positioning(page);
 }
 
-/** The files of a printer, from its configuration to a configuration with the correction. */
+/** The files of a printer, from its configuration to a configuration with the correction; the machine file is made on the page. */
 async function printer(page) {
-  await page.drop([{ name: 'printer.xml', bytes: bytes('touch/printer.xml') }]);
+  await page.evaluate("document.getElementById('new-machine').open = true");
+  await page.type('#new-axes', 'X:0:235 Y:0:235 Z:0:250');
+  await page.type('#new-name', 'printer');
+  await page.click('#make-machine');
   await chosen(page, 'printer.xml');
   const mesh = Array.from(
     { length: 5 },
@@ -192,6 +195,15 @@ async function printer(page) {
   );
   assert.equal(await page.evaluate('document.querySelector(\'[data-file="printer.cfg"]\').dataset.kind'), 'printer');
   await picture(page, 'printer', '#import-box .source');
+  // The machine file declares no bed: said with the way to one that does.
+  await words(page, '#stood-room', 'write bed:plane into the field "artefact"');
+  await page.evaluate("document.querySelector('#begin [data-command=new]').open = true");
+  await page.type('#begin [data-option=artefact]', 'bed:plane');
+  await page.type('#new-name', 'with_bed');
+  await page.click('#make-machine');
+  await chosen(page, 'with_bed.xml');
+  assert.ok(readFileSync(join(folder, 'with_bed.xml'), 'utf8').includes('<artefact name="bed" type="plane"/>'));
+  await page.until("document.getElementById('begin').hidden", 'the rows to be read');
   // Read with another offset: the field is there.
   await page.click('#read-differently');
   await page.type('#import-box [data-option=u]', '5');
@@ -216,14 +228,14 @@ async function printer(page) {
   await page.choose('#measurement', 'printer_read.csv');
   await view(page, 'add');
   await page.click('#fit');
-  await chosen(page, 'printer-fitted.xml');
+  await chosen(page, 'with_bed-fitted.xml');
   await view(page, 'export');
   await page.choose('#export-format', 'klipper');
   await page.evaluate(
     "[...document.querySelectorAll('#view-export [data-option=accept] input')].forEach((one) => { one.checked = true; })",
   );
   await page.click('#do-export');
-  await words(page, '#export-result', 'klipper-printer-fitted/');
+  await words(page, '#export-result', 'klipper-with_bed-fitted/');
 }
 
 /** Waits until a file of the project has a text. */

@@ -4,6 +4,9 @@ import { freeName, run } from './api.js';
 import { option, optionFields } from './options.js';
 import { button, guarded, panel } from './parts.js';
 
+export const kDeclareBed =
+  'The machine file must declare the bed that was touched. For a new machine file: "Make one by type and travels", options of new, write bed:plane into the field "artefact".';
+
 /**
  * Imports a file by a kind of `vernier import` that needs no table of columns: at once where it needs no further options, else its
  * options are asked for. `done(measurement)` is called with the name of the measurement file.
@@ -22,6 +25,7 @@ export async function importInstrument(box, kind, name, done) {
           null,
           el('p', { id: 'imported' }, `${name}: read into `, el('strong', {}, output), '.'),
           el('pre', { class: 'source wrap' }, text.trim()),
+          kind === 'printer' ? el('p', { class: 'note' }, kDeclareBed) : null,
           button('Read it differently', ask, { class: 'quiet', id: 'read-differently' }),
         ),
       );
