@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "tools/model/artefact.h"
 #include "tools/model/expression.h"
 #include "tools/model/measurement_names.h"
 #include "tools/text/numbers.h"
@@ -218,6 +219,14 @@ PlannedAxis parse_planned_axis(const std::string& words) {
     throw text::InputError(
         fmt::format("--axis {}: an axis that wraps has a range of one turn, 360 deg", words));
   return axis;
+}
+
+PlannedArtefact parse_planned_artefact(const std::string& words) {
+  const auto colon = words.rfind(':');
+  if (colon == std::string::npos || colon == 0 || !model::artefact_type_named(words.substr(colon + 1)))
+    throw text::InputError("--artefact " + words +
+                           ": NAME:TYPE with the type point, line, plane, sphere or cylinder, such as bed:plane");
+  return {words.substr(0, colon), words.substr(colon + 1)};
 }
 
 MachinePlan plan_machine(const std::string& type_name, std::vector<PlannedAxis> axes,

@@ -22,6 +22,11 @@ struct PlannedAxis {
   std::size_t along() const { return static_cast<std::size_t>(direction - (rotary() ? 'A' : 'X')); }
 };
 
+/// An object that the tool point touches, without known values: name and type of an <artefact>.
+struct PlannedArtefact {
+  std::string name, type;
+};
+
 /// Content of a new machine file. The lists of axes on both sides begin at the bed. The last axes of both
 /// lists carry the tool and the workpiece.
 struct MachinePlan {
@@ -37,6 +42,7 @@ struct MachinePlan {
   /// True if only errors are free in a fit that an instrument along each axis can measure. If only such
   /// errors are free, squareness, straightness and angles stay 0.
   bool positioning_only = false;
+  std::vector<PlannedArtefact> artefacts;
 };
 
 /// A type of machine for which the command `new` has a default chain.
@@ -55,6 +61,9 @@ const std::vector<MachineType>& machine_types();
 /// Reads an axis from a text: "X:0:600", "U:0:300:X" (along X), "C:0:360:wrap". Throws InputError with the
 /// wrong word.
 PlannedAxis parse_planned_axis(const std::string& words);
+
+/// Reads an artefact from a text: "bed:plane". Throws InputError if the name or a known type is missing.
+PlannedArtefact parse_planned_artefact(const std::string& words);
 
 /// Assigns the axes to the tool side and the workpiece side by the rule of the machine type. `tool_order`,
 /// `work_order`: names of the axes from the bed outwards, if their order differs from that of the type.

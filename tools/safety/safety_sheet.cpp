@@ -291,17 +291,21 @@ std::optional<SafetyRule> rule_named(const std::string& name) {
   return std::nullopt;
 }
 
+std::string rule_names(const std::string& separator) {
+  std::string all;
+  for (std::size_t i = 0; i < kSafetyRuleCount; ++i)
+    all += (i > 0 ? separator : "") + rule_name(static_cast<SafetyRule>(i));
+  return all;
+}
+
 std::vector<SafetyRule> rules_named(const std::vector<std::string>& names) {
   std::vector<SafetyRule> rules;
   for (const std::string& name : names) {
     const auto rule = rule_named(name);
-    if (!rule) {
-      std::string all;
-      for (std::size_t i = 0; i < kSafetyRuleCount; ++i)
-        all += (i > 0 ? ", " : "") + std::string(rule_name(static_cast<SafetyRule>(i)));
-      throw text::InputError(fmt::format(
-          "--accept \"{}\": the safety sheet has no rule of this name; its rules are {}", name, all));
-    }
+    if (!rule)
+      throw text::InputError(
+          fmt::format("--accept \"{}\": the safety sheet has no rule of this name; its rules are {}", name,
+                      rule_names(", ")));
     rules.push_back(*rule);
   }
   return rules;

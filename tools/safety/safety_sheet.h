@@ -29,6 +29,8 @@ enum class SafetyRule : std::uint8_t {
 inline constexpr std::size_t kSafetyRuleCount = 13;  // number of rules on the sheet
 const char* rule_name(SafetyRule rule);
 std::optional<SafetyRule> rule_named(const std::string& name);
+/// Returns the names of all rules in the order of their numbers, with `separator` between two names.
+std::string rule_names(const std::string& separator);
 
 struct SafetyFinding {
   SafetyRule rule = SafetyRule::kCorrection;

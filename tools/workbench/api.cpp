@@ -45,11 +45,11 @@ ApiReply Api::answer(const ApiRequest& request) {
     ApiReply (Api::*answer)(const ApiRequest&);
   };
   static constexpr Route kRoutes[] = {
-      {"GET", "/api/file", &Api::get_file},   {"PUT", "/api/file", &Api::put_file},
-      {"GET", "/api/lines", &Api::lines},     {"GET", "/api/jobs", &Api::jobs},
-      {"POST", "/api/jobs", &Api::jobs},      {"DELETE", "/api/jobs", &Api::jobs},
-      {"GET", "/api/history", &Api::history}, {"POST", "/api/history", &Api::history},
-      {"GET", "/api/live", &Api::live}};
+      {"GET", "/api/file", &Api::get_file},       {"PUT", "/api/file", &Api::put_file},
+      {"DELETE", "/api/file", &Api::delete_file}, {"GET", "/api/lines", &Api::lines},
+      {"GET", "/api/jobs", &Api::jobs},           {"POST", "/api/jobs", &Api::jobs},
+      {"DELETE", "/api/jobs", &Api::jobs},        {"GET", "/api/history", &Api::history},
+      {"POST", "/api/history", &Api::history},    {"GET", "/api/live", &Api::live}};
   if (request.method == "GET" && request.path == "/api/project") return project_page();
   if (request.method == "GET" && request.path == "/api/commands") return json_reply(commands_.allowed());
   if (FileDesk::answers(request) && request.method != "PUT") return reader_.reply(request);
@@ -94,10 +94,17 @@ ApiReply Api::put_file(const ApiRequest& request) {
   const std::string name = request.word("name");
   project_.writable(name);
   if (!request.words("new").empty() && std::filesystem::exists(project_.writable(name)))
-    throw text::InputError(fmt::format("\"{}\": a file of this name already exists", name));
+    throw text::InputError(
+        fmt::format("\"{}\": a file of this name already exists; replace or delete it", name));
   if (ApiReply checked = reader_.reply(request); checked.status != 200) return checked;
   project_.save(name, request.body);
   return json_reply({{"name", name}, {"bytes", request.body.size()}});
+}
+
+ApiReply Api::delete_file(const ApiRequest& request) {
+  const std::string name = request.word("name");
+  project_.remove(name);
+  return json_reply({{"name", name}});
 }
 
 /// The lines around an error: {"first", "lines": [...]}.

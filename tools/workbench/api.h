@@ -32,6 +32,7 @@ class Api {
   ApiReply project_page();
   ApiReply get_file(const ApiRequest& request);
   ApiReply put_file(const ApiRequest& request);
+  ApiReply delete_file(const ApiRequest& request);
   ApiReply lines(const ApiRequest& request);
   ApiReply jobs(const ApiRequest& request);
   ApiReply history(const ApiRequest& request);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/workbench/runs/commands.h"
 
+#include <algorithm>
+
 #include "tests/unit/workbench/rig.h"
 #include "tools/text/error.h"
 #include "tools/text/process.h"
@@ -69,6 +71,52 @@ TEST(WorkbenchCommand, LooksAtAFleetAndChangesNothingOfIt) {
         << what;
   for (const char* place : {"../fleet.db", "/tmp/fleet.db", "none.db", "--x", "postgresqlx://h"})
     EXPECT_THROW(rig.typed({{"command", "fleet due"}, {"registry", place}}), InputError) << place;
+}
+
+TEST(WorkbenchCommand, EveryExportOfTheProgramIsOnThePage) {
+  const Rig rig;
+  const auto has = [](const auto& list, const std::string& name) {
+    return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one["name"] == name; });
+  };
+  std::size_t formats = 0;
+  for (const auto& command : test::described()) {
+    const auto name = command["name"].template get<std::string>();
+    if (!name.starts_with("export ")) continue;
+    ++formats;
+    ASSERT_TRUE(has(rig.table.allowed(), name)) << name;
+    json request = {{"command", name}, {"machine", "m.xml"}, {"output", "out"}};
+    EXPECT_EQ(rig.typed(request), "vernier " + name + " m.xml -o out");
+    request["accept"] = {"measured-range", "check-rows"};
+    EXPECT_EQ(rig.typed(request),
+              "vernier " + name + " m.xml --accept measured-range --accept check-rows -o out");
+    request["accept"] = {"everything"};
+    EXPECT_THROW(rig.typed(request), InputError) << name;
+    for (const char* output : {"../out", "/tmp/out", ".vernier", "-o"})
+      EXPECT_THROW(rig.typed({{"command", name}, {"machine", "m.xml"}, {"output", output}}), InputError);
+  }
+  EXPECT_GE(formats, 11u);
+  EXPECT_EQ(rig.typed({{"command", "export linuxcnc"}, {"machine", "m.xml"}, {"type", 0}, {"output", "lc"}}),
+            "vernier export linuxcnc m.xml --type 0 -o lc");
+  EXPECT_EQ(rig.typed({{"command", "compile"},
+                       {"machine", "m.xml"},
+                       {"accept", {"measured-range"}},
+                       {"output", "image"}}),
+            "vernier compile m.xml --accept measured-range -o image");
+  EXPECT_EQ(
+      rig.typed({{"command", "correct"}, {"machine", "m.xml"}, {"path", "rows.csv"}, {"output", "c.csv"}}),
+      "vernier correct m.xml rows.csv -o c.csv");
+  EXPECT_EQ(rig.typed({{"command", "map"}, {"machine", "m.xml"}, {"language", "de"}, {"output", "map.html"}}),
+            "vernier map m.xml --language de -o map.html");
+}
+
+TEST(WorkbenchCommand, AnEmptyFieldIsCalledEmpty) {
+  const Rig rig;
+  try {
+    rig.typed({{"command", "fleet due"}, {"registry", ""}});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "\"registry\": is empty: give a value");
+  }
 }
 
 TEST(WorkbenchCommand, RefusesWhatIsNotInTheTable) {
@@ -146,8 +194,11 @@ TEST(WorkbenchCommand, EveryAllowedOptionThatNamesAFileIsConfined) {
         files += kind.starts_with("reads") || kind.starts_with("writes") ? 1 : 0;
         continue;
       }
-      // These only tell of a file: the place of a circle in the files' order, a line of a report's head.
-      if (option["name"] == "plane" || option["name"] == "header") continue;
+      // These only tell of a file: the place of a circle in the files' order, a line of a report's head and
+      // its language, a tool of the machine file.
+      if (option["name"] == "plane" || option["name"] == "header" || option["name"] == "language" ||
+          (command["name"] == "correct" && option["name"] == "tool"))
+        continue;
       for (const char* word :
            {"file", "folder", "directory", "(CSV", "(XML", "(HTML", ".csv", ".xml", "report"})
         EXPECT_EQ(help.find(word), std::string::npos)

@@ -25,7 +25,7 @@ async function emulate(page, { width = 1280, height = 720, media = '', dark = fa
 /** Nothing there: it says what to do, and nothing can be pressed that needs what is not there. */
 async function nothingYet(page) {
   assert.ok((await text(page, '#begin-steps')).includes('drop any spreadsheet'), 'the page says how to begin');
-  for (const name of ['compare', 'diagnose', 'add', 'board', 'fleet']) {
+  for (const name of ['compare', 'diagnose', 'add', 'board', 'export', 'fleet']) {
     await view(page, name);
     assert.equal(await page.evaluate("document.querySelectorAll('.view:not([hidden]) .error:not(:empty)').length"), 0, `${name}: no error`);
   }
@@ -298,7 +298,7 @@ async function everywhere(page) {
     [1280, 720, true],
   ]) {
     await emulate(page, { width, height, dark });
-    for (const name of ['project', 'compare', 'diagnose', 'add', 'board', 'fleet']) {
+    for (const name of ['project', 'compare', 'diagnose', 'add', 'board', 'export', 'fleet']) {
       await view(page, name);
       await new Promise((wait) => setTimeout(wait, 300));
       assert.ok(await page.evaluate('document.documentElement.scrollWidth <= innerWidth'), `${name} fits ${width} px`);

@@ -31,7 +31,9 @@ async function seen(page) {
   fleet('collect', 'night');
   // WHEN somebody looks at the fleet
   await view(page, 'fleet');
-  await page.evaluate("(() => { const one = document.getElementById('fleet-registry'); one.value = 'fleet.db'; })()");
+  await page.evaluate(
+    "(() => { const one = document.getElementById('fleet-registry'); one.value = 'fleet.db'; one.dispatchEvent(new Event('input')); })()",
+  );
   await page.click('#fleet-look');
   await page.until("document.querySelectorAll('#fleet-batches li').length === 1", 'the answers', 60);
   // THEN the page has what the commands answer
@@ -51,7 +53,9 @@ async function seen(page) {
   assert.equal(await text(page, '#fleet-batches'), 'night: 2 answers');
   await picture(page, 'fleet');
   // AND a registry that is none is named
-  await page.evaluate("(() => { const one = document.getElementById('fleet-registry'); one.value = 'rows.csv'; })()");
+  await page.evaluate(
+    "(() => { const one = document.getElementById('fleet-registry'); one.value = 'rows.csv'; one.dispatchEvent(new Event('input')); })()",
+  );
   await page.click('#fleet-look');
   await page.until("document.querySelector('#fleet-error .error')", 'the error', 60);
   assert.ok((await text(page, '#fleet-error')).includes('rows.csv'));

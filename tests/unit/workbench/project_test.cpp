@@ -55,6 +55,37 @@ TEST(Project, WritesToNoDeviceOrPipeAndIntoNoFolderThatHoldsOne) {
   EXPECT_EQ(read_file(folder.beside("secret.csv")), "secret");
 }
 
+TEST(Project, LooksForLinksInEveryFolderThatACommandWrites) {
+  const test::Folder folder;
+  write_file(folder.beside("secret.csv"), "secret");
+  std::filesystem::create_directories(folder.in("out/image"));
+  const Project project(folder.project());
+  EXPECT_NO_THROW(project.writable("out"));
+  std::filesystem::create_symlink(folder.beside("secret.csv"), folder.in("out/image/machine.vimg"));
+  EXPECT_THROW(project.writable("out"), InputError);
+}
+
+TEST(Project, DeletesFilesOfTheFolderOnly) {
+  const test::Folder folder;
+  write_file(folder.beside("secret.csv"), "secret");
+  std::filesystem::create_directories(folder.in("image/deep"));
+  std::filesystem::create_directories(folder.in(".vernier"));
+  for (const char* name : {"a.csv", "image/machine.vimg", "image/deep/x.txt", ".vernier/history.json"})
+    write_file(folder.in(name), "x");
+  std::filesystem::create_symlink(folder.beside("secret.csv"), folder.in("link.csv"));
+  const Project project(folder.project());
+  for (const char* name :
+       {"../secret.csv", "link.csv", ".vernier/history.json", "image", "none.csv", "", "."})
+    EXPECT_THROW(project.remove(name), InputError) << name;
+  project.remove("a.csv");
+  project.remove("image/deep/x.txt");
+  EXPECT_FALSE(std::filesystem::exists(folder.in("a.csv")));
+  EXPECT_FALSE(std::filesystem::exists(folder.in("image/deep"))) << "an empty folder goes with its last file";
+  EXPECT_TRUE(std::filesystem::exists(folder.in("image/machine.vimg")));
+  EXPECT_EQ(read_file(folder.beside("secret.csv")), "secret");
+  EXPECT_EQ(read_file(folder.in(".vernier/history.json")), "x");
+}
+
 TEST(CommandHistory, FollowsNoLinkOutOfTheFolder) {
   const test::Folder folder;
   write_file(folder.beside("secret.json"), "[]");

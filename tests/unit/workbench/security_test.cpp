@@ -140,10 +140,31 @@ TEST_F(Attack, NothingOutsideOfTheFolderIsReadOrWritten) {
     EXPECT_EQ(status(ask("GET", std::string("/api/file?name=") + name, ours())), 422) << name;
     EXPECT_EQ(status(put(name, "X[mm],x[mm]\n1,2\n")), 422) << name;
   }
+  const std::string writing = ours() + "X-Vernier: 1\r\n";
+  for (const char* name : {"../secret.csv", "%2e%2e/secret.csv", "link.csv", ".vernier/history.json", ""})
+    EXPECT_EQ(status(ask("DELETE", std::string("/api/file?name=") + name, writing)), 422) << name;
   for (const char* path : {"/../secret.csv", "/%2e%2e/secret.csv", "/etc/passwd", "//etc/passwd"})
     EXPECT_EQ(status(ask("GET", path, ours())), 404) << path;
   EXPECT_EQ(read_file(folder_.beside("secret.csv")), "secret");
   EXPECT_FALSE(std::filesystem::exists(folder_.in(".vernier")));
+}
+
+TEST_F(Attack, AFileIsReplacedOrDeletedOnlyWhereThePageAsksForIt) {
+  write_file(folder_.in("a.csv"), test::kSmallRows);
+  const std::string rows = "X[mm],x[mm]\n1,2\n", path = "/api/file?name=a.csv";
+  const std::string length = "Content-Length: " + std::to_string(rows.size()) + "\r\n";
+  // A new file never takes the place of another one; a link or a form of another site deletes nothing.
+  EXPECT_EQ(status(ask("PUT", path + "&new=1", ours() + "X-Vernier: 1\r\n" + length, rows)), 422);
+  EXPECT_EQ(status(ask("DELETE", path, ours())), 403);
+  EXPECT_EQ(status(ask("DELETE", path, "Host: " + host() + "\r\nX-Vernier: 1\r\n")), 401);
+  EXPECT_EQ(read_file(folder_.in("a.csv")), test::kSmallRows);
+  // What cannot be read does not replace what can.
+  EXPECT_EQ(status(put("a.csv", "X[mm],x[mm]\n1\n")), 422);
+  EXPECT_EQ(read_file(folder_.in("a.csv")), test::kSmallRows);
+  EXPECT_EQ(status(put("a.csv", rows)), 200);
+  EXPECT_EQ(read_file(folder_.in("a.csv")), rows);
+  EXPECT_EQ(status(ask("DELETE", path, ours() + "X-Vernier: 1\r\n")), 200);
+  EXPECT_FALSE(std::filesystem::exists(folder_.in("a.csv")));
 }
 
 TEST_F(Attack, BodiesHaveALengthAndALimit) {

@@ -41,6 +41,19 @@ TEST(Sheets, AMeasurementFileIsToldFromASpreadsheetByItsFirstLine) {
   EXPECT_FALSE(begins_as_measurement(""));
 }
 
+TEST_F(Desk, FilesOfAPrinterAreKnownByTheirContents) {
+  write_file(folder.in("printer.cfg"),
+             "[printer]\nkinematics: corexy\n#*# [bed_mesh default]\n#*# points =\n");
+  write_file(folder.in("klippy.log"), "Stats 1: x\nprobe: at 30.000,30.000 bed will contact at z=0.14\n");
+  write_file(folder.in("heightmap.csv"),
+             "RepRapFirmware height map file v2 generated at 2026-01-01 10:00\naxis0\n");
+  write_file(folder.in("console.txt"), "Bed X: 10.0 Y: 10.0 Z: 0.1\n");
+  for (const char* name : {"printer.cfg", "klippy.log", "heightmap.csv", "console.txt"})
+    EXPECT_EQ(get("/api/kind", {{"name", name}})["kind"], "printer") << name;
+  EXPECT_EQ(get("/api/kind", {{"name", "rows.csv"}})["kind"], "measurement");
+  EXPECT_EQ(get("/api/kind", {{"name", "german.csv"}})["kind"], "sheet");
+}
+
 TEST(Sheets, APreviewIsWhatTheImportDoes) {
   const auto preview = sheet_preview(kGerman, "german.csv", {});
   EXPECT_EQ(preview["decimal"], "comma");

@@ -18,7 +18,7 @@ namespace {
 struct NewArguments {
   std::string type, output, measurements, json, name, tool, dh, urdf, tip, reading = "point", errors = "all";
   std::string tool_side, work_side;
-  std::vector<std::string> axes, centres, joints;
+  std::vector<std::string> axes, centres, joints, artefacts;
 };
 
 /// Names the types of machines in the help. It accepts any word: plan_machine gives a reason for a delta.
@@ -119,6 +119,8 @@ create::MachinePlan plan_of(const NewArguments& arguments, const CLI::App& comma
       arguments.urdf.empty() ? plan_of_words(arguments, command) : plan_of_urdf(arguments, command);
   if (!arguments.name.empty()) plan.name = arguments.name;
   plan.positioning_only = arguments.errors == "positioning";
+  for (const std::string& words : arguments.artefacts)
+    plan.artefacts.push_back(create::parse_planned_artefact(words));
   if (plan.positioning_only && !plan.arm.empty())
     throw text::InputError(
         "--errors positioning is only for machines with linear axes; a robot always has all errors of its "
@@ -211,6 +213,11 @@ void register_new(CLI::App& vernier) {
           "--reading", arguments->reading,
           "quantities that the survey reads: " + format::survey_words("or") + " (" + reading_help() + ")")
       ->capture_default_str();
+  command
+      ->add_option("--artefact", arguments->artefacts,
+                   "NAME:TYPE: an object that the tool point touches (column on), of type point, line, plane, "
+                   "sphere or cylinder: bed:plane for the bed of a 3D printer; repeat for each object")
+      ->allow_extra_args(false);
   command->add_option("--tool", arguments->tool,
                       "tool point in the frame of the last axis that carries the tool, mm: 0,0,-120");
   command->add_option("--name", arguments->name, "name of the machine");

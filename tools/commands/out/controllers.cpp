@@ -126,7 +126,7 @@ void export_controller(const ControllerArguments& arguments, Controller controll
 void add_controller(CLI::App* parent, const char* name, const char* what, Controller controller) {
   auto arguments = std::make_shared<ControllerArguments>();
   arguments->common.tolerance_um = 1;
-  CLI::App* command = add_export(parent, name, what, "directory",
+  CLI::App* command = add_export(parent, name, what, kWritesFolder, "directory",
                                  std::shared_ptr<ExchangeArguments>(arguments, &arguments->common));
   command
       ->add_option("--step", arguments->step_mm,

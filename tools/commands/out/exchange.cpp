@@ -190,6 +190,7 @@ void register_export(CLI::App& vernier) {
   auto screw = std::make_shared<ExchangeArguments>();
   CLI::App* linuxcnc = add_export(
       parent, "linuxcnc", "LinuxCNC: screw compensation (COMP_FILE), and a configuration of its component",
+      kWritesFolder,
       "output directory, with one file for each axis and the configuration; with --axis: name of the file",
       screw);
   linuxcnc->add_flag("--component", screw->component,
@@ -204,11 +205,11 @@ void register_export(CLI::App& vernier) {
   add_type(linuxcnc, *screw);
   linuxcnc->callback([screw] { export_screw(*screw); });
   auto plain = std::make_shared<ExchangeArguments>();
-  add_export(parent, "axis-csv", "One CSV file for each axis, with units", "directory", plain)
+  add_export(parent, "axis-csv", "One CSV file for each axis, with units", kWritesFolder, "directory", plain)
       ->callback([plain] { export_tables(*plain, false); });
   auto isg = std::make_shared<ExchangeArguments>();
   add_export(parent, "isg-csv", "Component errors for ISG and Beckhoff volumetric compensation (ISG_CSV)",
-             "file", isg)
+             kWrites, "file", isg)
       ->callback([isg] { export_tables(*isg, true); });
   add_printer_exports(parent);
   add_controller_exports(parent);

@@ -110,18 +110,20 @@ void print_rms(const ExchangeArguments& arguments, std::size_t positions, double
       positions, before_um, after_um);
 }
 
-CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,
-                     const std::shared_ptr<ExchangeArguments>& arguments) {
+CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output_type,
+                     const char* output, const std::shared_ptr<ExchangeArguments>& arguments) {
   CLI::App* command = parent->add_subcommand(kind, what);
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
-  command->add_option("-o,--output", arguments->output, output)->type_name(kWrites)->required();
+  command->add_option("-o,--output", arguments->output, output)->type_name(output_type)->required();
   command->add_flag("--leave-out", arguments->leave_out,
                     "write what the format can represent, and list what it cannot");
   command->add_option("--at", arguments->at,
                       "values of the other axes and inputs: \"Y=0,T=25\"; default: middle of the ranges");
-  command->add_option("--accept", arguments->accept,
-                      "name of a rule of the safety sheet (\"safe to run?\", tools/docs/safety.md) that you "
-                      "override; may be repeated");
+  command
+      ->add_option("--accept", arguments->accept,
+                   "name of a rule of the safety sheet (\"safe to run?\", tools/docs/safety.md) that you "
+                   "override; may be repeated")
+      ->type_name("{" + safety::rule_names(",") + "}");
   command->add_option("--json", arguments->json,
                       "file for the result as JSON, for programs; - for standard output");
   return command;

@@ -60,9 +60,10 @@ std::vector<exchange::LeftOut> remaining(const std::array<double, 3>& after_um);
 /// Prints the rms error of the tool point over a number of positions, without and with the exported files.
 void print_rms(const ExchangeArguments& arguments, std::size_t positions, double before_um, double after_um);
 
-/// Adds the subcommand of an export format, with the options of every export.
-CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output,
-                     const std::shared_ptr<ExchangeArguments>& arguments);
+/// Adds the subcommand of an export format, with the options of every export. `output_type`: kWrites or
+/// kWritesFolder, the kind of the option `--output`; `output`: its help text.
+CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output_type,
+                     const char* output, const std::shared_ptr<ExchangeArguments>& arguments);
 
 /// Adds the export subcommands for the firmware of 3D printers and small machines.
 void add_printer_exports(CLI::App* parent);

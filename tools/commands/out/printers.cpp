@@ -82,7 +82,7 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
 void add_printer(CLI::App* parent, const char* name, const char* what, const char* steps, Firmware firmware) {
   auto arguments = std::make_shared<PrinterArguments>();
   arguments->common.tolerance_um = 1;
-  CLI::App* command = add_export(parent, name, what, "directory",
+  CLI::App* command = add_export(parent, name, what, kWritesFolder, "directory",
                                  std::shared_ptr<ExchangeArguments>(arguments, &arguments->common));
   command->add_option("--steps", arguments->steps, steps)->type_name("X,Y,Z");
   command

@@ -32,8 +32,8 @@ void export_urdf(const ExchangeArguments& arguments) {
 
 void add_robot_exports(CLI::App* parent) {
   auto arguments = std::make_shared<ExchangeArguments>();
-  CLI::App* command =
-      add_export(parent, "urdf", "URDF: the calibrated joints of an arm (ROS)", "directory", arguments);
+  CLI::App* command = add_export(parent, "urdf", "URDF: the calibrated joints of an arm (ROS)", kWritesFolder,
+                                 "directory", arguments);
   command->footer(
       "The command writes robot.urdf with a joint for each axis, at the origin and axis about which the "
       "fitted chain moves. It\n"

@@ -220,9 +220,11 @@ void register_compile(CLI::App& vernier) {
   command->add_flag("--certificate", arguments->certificate,
                     "also write bound.g, a script of the compiled program: Gappa (gappa DIR/bound.g) proves "
                     "the error bound independently of Vernier");
-  command->add_option("--accept", arguments->accept,
-                      "name of a rule of the safety sheet (\"safe to run?\", tools/docs/safety.md) that you "
-                      "override; the image records the name; may be repeated");
+  command
+      ->add_option("--accept", arguments->accept,
+                   "name of a rule of the safety sheet (\"safe to run?\", tools/docs/safety.md) that you "
+                   "override; the image records the name; may be repeated")
+      ->type_name("{" + safety::rule_names(",") + "}");
   command->footer(
       "The safety sheet tests the correction over <volume> (else over the axis ranges), with the <tools> of "
       "the machine file.\n"

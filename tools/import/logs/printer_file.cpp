@@ -530,6 +530,12 @@ ImportTable table_of(const std::string& file, const std::vector<Touch>& touches,
 
 }  // namespace
 
+bool is_printer_file(const std::string& text) {
+  const auto has = [&](const std::string& mark) { return text.find(mark) != std::string::npos; };
+  return text.starts_with(kHeightMap) || has('[' + std::string(kMesh)) || has("probe at ") ||
+         has("probe: at ") || has("Bed X:");
+}
+
 PrinterFile read_printer_file(const std::string& text, const std::string& file,
                               const PrinterOptions& options) {
   PrinterFile result;

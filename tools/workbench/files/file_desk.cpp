@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "tools/format/csv_file.h"
+#include "tools/import/logs/printer_file.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
 #include "tools/results/safety_json.h"
 #include "tools/safety/safety_sheet.h"
+#include "tools/sheet/encoding.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/workbench/files/excluded.h"
@@ -60,10 +62,16 @@ ApiReply FileDesk::check(const ApiRequest& request) {
   return json_reply({{"name", name}});
 }
 
-/// {"kind"}: "measurement", or "sheet" where a table has to be imported.
+/// {"kind"}: "measurement", "printer" for the bed of a 3D printer, or "sheet" where a table has to be
+/// imported.
 ApiReply FileDesk::kind(const ApiRequest& request) {
   const std::string text = text::read_file(project_.existing(request.word("name")).string());
-  return json_reply({{"kind", begins_as_measurement(text) ? "measurement" : "sheet"}});
+  const char* kind = "sheet";
+  if (begins_as_measurement(text))
+    kind = "measurement";
+  else if (importer::is_printer_file(sheet::utf8_text(text)))
+    kind = "printer";
+  return json_reply({{"kind", kind}});
 }
 
 ApiReply FileDesk::sheet(const ApiRequest& request) {

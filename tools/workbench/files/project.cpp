@@ -108,13 +108,25 @@ fs::path Project::writable(const std::string& name) const {
   fs::path path = checked(name);
   // A command with a folder as argument chooses the names of the files in it.
   std::error_code failed;
-  for (fs::directory_iterator at(path, failed), end; !failed && at != end; at.increment(failed))
-    refuse_special(at->path(), name + "/" + at->path().filename().string());
+  for (fs::recursive_directory_iterator at(path, failed), end; !failed && at != end; at.increment(failed))
+    refuse_special(at->path(), name + "/" + at->path().lexically_relative(path).generic_string());
   return path;
 }
 
 void Project::save(const std::string& name, const std::string& bytes) const {
   text::write_file(writable(name).string(), bytes);
+}
+
+void Project::remove(const std::string& name) const {
+  const fs::path path = existing(name);
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed))
+    throw text::InputError("\"" + name + "\": a folder; only files can be deleted");
+  if (!fs::remove(path, failed) || failed)
+    throw text::InputError("\"" + name + "\": cannot be deleted: " + failed.message());
+  // A folder without files would keep its name from the next result of a command.
+  for (fs::path folder = path.parent_path(); folder != root_; folder = folder.parent_path())
+    if (!fs::is_empty(folder, failed) || !fs::remove(folder, failed)) return;
 }
 
 void Project::list_folder(const fs::path& folder, const std::string& prefix, bool deeper,

@@ -40,11 +40,14 @@ class Project {
   /// Returns the path of an existing file or folder. Throws InputError with the name if the name is not
   /// permitted, contains a link, or does not exist.
   std::filesystem::path existing(const std::string& name) const;
-  /// Returns the path of a file that may be written. The file need not exist. Throws InputError if the name
-  /// is not permitted, or if the path contains a link, a device or a pipe.
+  /// Returns the path of a file or folder that may be written. The file need not exist. Throws InputError if
+  /// the name is not permitted, or if the path, or a folder at the path, contains a link, a device or a pipe.
   std::filesystem::path writable(const std::string& name) const;
   /// Writes a file. Another program reads either the old file or the complete new file.
   void save(const std::string& name, const std::string& bytes) const;
+  /// Deletes a file, and the folder that contained it if this folder is then empty. Throws InputError if the
+  /// name is not permitted, contains a link, or is not the name of a file.
+  void remove(const std::string& name) const;
   /// Returns the files in the project folder and one level below, sorted by name. Hidden files and links are
   /// excluded, and only the first 2000 files are returned.
   std::vector<ProjectFile> list() const;

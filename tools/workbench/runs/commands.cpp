@@ -24,7 +24,7 @@ struct Allowed {
 /// must give it though the command does not, because without it the command would ask, use a file outside of
 /// the project, or keep no result.
 constexpr Allowed kAllowed[] = {
-    {"new", false, true, "type axis tool-side work-side name urdf tip reading output measurements"},
+    {"new", false, true, "type axis tool-side work-side name urdf tip reading errors artefact output measurements"},
     {"import table", false, true,
      "file separator decimal skip table sheet unit sign column deviation leave set check-every output! "
      "save-profile"},
@@ -34,18 +34,31 @@ constexpr Allowed kAllowed[] = {
     {"import probe", false, true,
      "file map separator decimal skip header column set check-every radius output"},
     {"import laser", false, true, "file output"},
-    {"import printer", false, true, "file profile on offset u output"},
+    {"import printer", false, true, "file profile on offset series u output"},
     {"fit", false, true, "machine meas images loss output!"},
-    {"compare", false, false, "machine meas! datum images header output"},
-    {"diagnose", false, false, "machine meas images most machine-out header output"},
-    {"evaluate iso230-2", false, false, "meas axis tolerance uncertainty header output"},
+    {"compare", false, false, "machine meas! datum images header language output"},
+    {"diagnose", false, false, "machine meas images most machine-out header language output"},
+    {"evaluate iso230-2", false, false, "meas axis tolerance uncertainty header language output"},
+    {"map", false, false, "machine grid correction inputs over lines header language output!"},
     {"add", false, true, "effect machine output"},
     {"set", false, true, "machine values output"},
     {"exclude", false, true, "meas lines! reason restore output!"},
     {"effects", false, false, ""},
     {"plan", false, false, "machine meas! separate! points confidence gcode output"},
     {"improve", false, true, "machine meas images yes! output"},
-    {"compile", false, true, "machine budget output"},
+    {"compile", false, true, "machine budget accept output"},
+    {"export siemens", false, true, "machine leave-out at accept step tolerance reference numbers output"},
+    {"export heidenhain", false, true, "machine leave-out at accept step tolerance reference output"},
+    {"export fanuc", false, true, "machine leave-out at accept step tolerance reference numbers unit output"},
+    {"export linuxcnc", false, true, "machine leave-out at accept component tolerance type output"},
+    {"export klipper", false, true, "machine leave-out at accept steps tolerance bed output"},
+    {"export rrf", false, true, "machine leave-out at accept steps tolerance bed output"},
+    {"export marlin", false, true, "machine leave-out at accept steps tolerance bed output"},
+    {"export grbl", false, true, "machine leave-out at accept steps tolerance output"},
+    {"export urdf", false, true, "machine leave-out at accept output"},
+    {"export axis-csv", false, true, "machine leave-out at accept output"},
+    {"export isg-csv", false, true, "machine leave-out at accept output"},
+    {"correct", false, true, "machine path at zero place tool deviation back chords rotary output"},
     {"replay", false, false, "meas image output"},
     {"keys", false, false, "output!"},
     {"image-diff", false, false, "dir with to key"},
@@ -76,8 +89,9 @@ std::string text_of(const Json& option, const nlohmann::json& value) {
   constexpr std::size_t kMost = 4000;
   if (!value.is_string()) refuse(option, "must be a text");
   const auto text = value.get<std::string>();
-  if (text.empty() || text.front() == '-' || text.size() > kMost)
-    refuse(option, fmt::format("must have 1 to {} bytes, and must not start with -", kMost));
+  if (text.empty()) refuse(option, "is empty: give a value");
+  if (text.front() == '-') refuse(option, "must not begin with -");
+  if (text.size() > kMost) refuse(option, fmt::format("must have at most {} bytes", kMost));
   if (std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
     refuse(option, "must be one line of text");
   return text;

@@ -23,7 +23,10 @@ export const getJson = async (path, params) => (await ask('GET', path, params)).
 export const postJson = async (path, value) => (await ask('POST', path, {}, JSON.stringify(value))).json();
 export const getBlob = async (path, params) => decode(await (await ask('GET', path, params)).arrayBuffer());
 export const postBlob = async (path, value) => decode(await (await ask('POST', path, {}, JSON.stringify(value))).arrayBuffer());
-export const putFile = async (name, bytes) => (await ask('PUT', '/api/file', { name, new: '1' }, bytes)).json();
+/** `replace`: an existing file of this name is replaced, else it is refused. */
+export const putFile = async (name, bytes, replace = false) =>
+  (await ask('PUT', '/api/file', { name, ...(replace ? {} : { new: '1' }) }, bytes)).json();
+export const deleteFile = async (name) => (await ask('DELETE', '/api/file', { name })).json();
 export const fileAddress = (name) => `/api/file?name=${encodeURIComponent(name)}`;
 
 /** JSON with typed arrays beside it (tools/workbench/files/blob.h). */

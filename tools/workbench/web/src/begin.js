@@ -74,7 +74,8 @@ export function beginPanel(choose) {
       item(machine, 'Which machine: drop its machine file (.xml) or the description of a robot (.urdf), or make one below.'),
       item(false, 'Then go to Compare: where the model fails, and from there along the path at the top.'),
     );
-    root.hidden = machine && rows;
+    // Rows that this machine cannot read may need another one.
+    root.hidden = machine && rows && !store.refusal;
     made_panel.open ||= rows && !machine;
   };
   on('project', draw);

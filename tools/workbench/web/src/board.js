@@ -6,7 +6,7 @@ import { budgetFigure } from './charts.js';
 import { livePanel } from './live.js';
 import { moreOptions, option } from './options.js';
 import { safetyPanel } from './safety.js';
-import { button, guarded, panel } from './parts.js';
+import { button, gate, guarded, panel } from './parts.js';
 import { emit, on, store } from './store.js';
 
 /** Needs an axis and a weight; prints a key for a person. */
@@ -71,6 +71,8 @@ export function boardView(root) {
     uploadOptions = moreOptions('upload', ['dir', 'confirm', 'revert', 'to', 'key']);
   const signed = () => (key.value ? { key: key.value } : {});
   const draw = () => {
+    gate(compile, store.machine ? null : 'Choose a machine at the top first');
+    for (const node of [upload, diff]) gate(node, folders().length ? null : 'There is no image yet: press Compile first');
     const keys = store.files.filter((file) => file.kind === 'key' && file.name.endsWith('.key')).map((file) => file.name);
     fill(image, folders(), image.value || folders().at(-1), folders().length ? null : 'no image yet');
     fill(key, keys, key.value || keys[0], keys.length ? null : 'no key yet');
@@ -142,12 +144,29 @@ export function boardView(root) {
       id: `board-${what}`,
     });
   on('project', draw);
+  on('rows', draw);
+  on('safety', () => {
+    // What is not met can be accepted in a field of Compile.
+    if (store.safety && !store.safety.ok) compileOptions.element.open = true;
+  });
   draw();
   const safety = safetyPanel();
   root.append(
     error,
     safety.element,
-    panel('Compile', el('div', { class: 'controls' }, compile), compileOptions.element, budget),
+    panel(
+      'Compile',
+      el(
+        'p',
+        {},
+        'An image is for a board that corrects the machine while it moves. For the tables of a control, or a file for a robot or a printer, go to ',
+        el('a', { href: '#export' }, 'Export'),
+        '.',
+      ),
+      el('div', { class: 'controls' }, compile),
+      compileOptions.element,
+      budget,
+    ),
     panel(
       'Board',
       el('div', { class: 'controls' }, image, url, key, makeKey),

@@ -3,7 +3,7 @@ import { choice, el, tiles } from '../../../report/web/src/dom.js';
 import { number, printed } from '../../../report/web/src/data.js';
 import { getJson, run } from './api.js';
 import { handoverPanel } from './handover.js';
-import { button, guarded, nothingYet, panel } from './parts.js';
+import { button, gate, guarded, nothingYet, panel } from './parts.js';
 import { redrawAll } from './plot.js';
 import { polarPlot } from './polar.js';
 import { along, chosenLines, compared, lineWords, loadRows } from './rows.js';
@@ -100,6 +100,8 @@ function probability() {
   return plot;
 }
 
+const kNoRows = 'Choose rows first: drag in a plot, or press rows of the table';
+
 /** Leave the chosen rows out, with a reason; put them back. */
 function exclusion(error) {
   const reason = el('input', { type: 'text', placeholder: 'why? (kept with each row)', 'aria-label': 'reason', maxlength: '200' });
@@ -143,9 +145,9 @@ function exclusion(error) {
   };
   on('selection', () => {
     count.textContent = String(selection.count);
-    exclude.disabled = selection.count === 0;
+    gate(exclude, selection.count ? null : kNoRows);
   });
-  exclude.disabled = true;
+  gate(exclude, kNoRows);
   fill();
   return el(
     'div',

@@ -199,7 +199,7 @@ function planPanel(result, error) {
 export function diagnoseView(root) {
   const error = el('div', {}),
     box = el('div', { id: 'diagnosis' });
-  const options = moreOptions('diagnose', ['machine', 'meas', 'images', 'header', 'output']);
+  const options = moreOptions('diagnose', ['machine', 'meas', 'images', 'header', 'language', 'output']);
   const go = button(
     'Diagnose: what is missing?',
     () =>

@@ -2,7 +2,7 @@
 import { el, table } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
 import { run } from './api.js';
-import { button, guarded, panel } from './parts.js';
+import { button, gate, guarded, panel } from './parts.js';
 import { on, store } from './store.js';
 
 const left = (name) => ({ name, left: true });
@@ -65,6 +65,7 @@ export function fleetView(root) {
     const there = store.files.find((file) => file.name === 'fleet.db');
     if (!registry.value && there) registry.value = there.name;
   });
+  const ready = () => gate(look, registry.value.trim() ? null : 'State the registry first: a file of the project, or postgresql://…');
   const ask = async (what) => (await run({ command: `fleet ${what}`, registry: registry.value })).result;
   const look = button(
     'Look',
@@ -85,9 +86,12 @@ export function fleetView(root) {
       }),
     { id: 'fleet-look' },
   );
+  registry.addEventListener('input', ready);
+  on('project', ready);
+  ready();
   root.append(
     error,
-    panel('Machines', el('div', { class: 'controls' }, registry, look), machines),
+    panel('Machines', el('div', { class: 'controls' }, el('label', { class: 'choice' }, 'registry ', registry), look), machines),
     panel('What drifts', drifts),
     panel('Batches', batches),
   );

@@ -5,6 +5,14 @@ import { on, store } from './store.js';
 
 const um = (value) => `${number(value, 3)} µm`;
 
+/** What to do after the diagnosis: to add what it named, or only to fit. */
+function afterDiagnosis() {
+  const named = store.diagnosis?.candidates.some((one) => one.accepted) ?? true;
+  return named
+    ? 'Fit, add what was named, and see the error fall on held-out rows.'
+    : 'No effect was named: fit the model as it is, then see whether it is safe to run.';
+}
+
 /** The way from a measurement to a board: [id, name, view, is it done?, what to do]. */
 const kPath = [
   ['data', 'Data', 'project', () => store.measurements.length > 0, () => 'Drop what was measured, in whatever file it came.'],
@@ -26,7 +34,7 @@ const kPath = [
         ? `The model leaves ${um(store.compare.rms_um)} beside ${um(store.compare.noise_um)} of noise: ask what is missing.`
         : 'Ask what is missing.',
   ],
-  ['fall', 'Watch it fall', 'add', () => store.steps.length > 0, () => 'Fit, add what was named, and see the error fall on held-out rows.'],
+  ['fall', 'Watch it fall', 'add', () => store.steps.length > 0, afterDiagnosis],
   [
     'safe',
     'Safe to run?',
@@ -34,7 +42,13 @@ const kPath = [
     () => store.safety?.ok === true && store.safety.rules.every((one) => one.value !== null),
     () => store.safety?.refusal || 'Twelve rules say whether the correction may run.',
   ],
-  ['upload', 'Upload', 'board', () => store.uploaded, () => 'Compile, upload on trial, watch, confirm.'],
+  [
+    'upload',
+    'Upload or export',
+    'board',
+    () => store.uploaded || store.exported,
+    () => 'With a board: compile, upload on trial, watch, confirm. Without a board: Export writes the files for the control.',
+  ],
 ];
 
 /** The path as a row of steps; each can be gone to at any time, and the whole can be put away. */
@@ -71,7 +85,7 @@ export function guide() {
         ),
       ),
     );
-    hint.textContent = next ? next[4]() : 'The correction runs.';
+    hint.textContent = next ? next[4]() : store.uploaded ? 'The correction runs.' : 'The files for the control are written.';
   };
   for (const event of ['project', 'rows', 'compared', 'diagnosed', 'steps', 'safety', 'uploaded', 'view']) on(event, draw);
   draw();

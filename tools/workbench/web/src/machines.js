@@ -63,7 +63,7 @@ export const kTypes = [
   ],
   [
     'robot',
-    'Robot with six joints (lengths of a UR10e: yours by --dh or --urdf in the terminal)',
+    'Robot with six joints (lengths of a UR10e; for yours drop its description, .urdf)',
     '',
     [
       kBed,

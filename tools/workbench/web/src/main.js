@@ -10,6 +10,8 @@ import { diagnoseView } from './diagnose.js';
 import { fleetView } from './fleet.js';
 import { guide } from './guide.js';
 import { rememberTheWay } from './memory.js';
+import { exportView } from './export.js';
+import { gate, kNoSubject } from './parts.js';
 import { redrawAll } from './plot.js';
 import { choose, projectView } from './project.js';
 import { fileNames } from './options.js';
@@ -21,6 +23,7 @@ const kViews = [
   ['diagnose', 'Diagnose', diagnoseView],
   ['add', 'Add and watch', addView],
   ['board', 'Compile and upload', boardView],
+  ['export', 'Export', exportView],
   ['fleet', 'Fleet', fleetView],
 ];
 
@@ -62,7 +65,7 @@ function subjectBar() {
   // What has to have a machine and rows cannot be pressed without.
   on('rows', () => {
     document.body.dataset.subject = store.rows ? 'yes' : 'no';
-    for (const node of document.querySelectorAll('[data-needs-subject]')) node.disabled = !store.rows;
+    for (const node of document.querySelectorAll('[data-needs-subject]')) gate(node, store.rows ? null : kNoSubject);
   });
   return el('span', { class: 'subject' }, machine, rows);
 }
@@ -124,7 +127,7 @@ async function start() {
       'header',
       {},
       title,
-      el('span', { class: 'note folder', title: store.version }, store.folder),
+      el('span', { class: 'note folder', title: `${store.folder}, Vernier ${store.version}` }, store.folder),
       nav,
       subjectBar(),
       way.show,

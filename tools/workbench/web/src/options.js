@@ -5,6 +5,9 @@ import { on, store } from './store.js';
 /** What the program declares of an option that the page may use: {name, kind, list, required, help, words, low, high, default}. */
 export const option = (command, name) => store.commands.find((one) => one.name === command).options.find((one) => one.name === name);
 
+/** The name of an option as its field has it. */
+export const fieldName = (name) => name.replaceAll('-', ' ');
+
 /** An input for an option. Its `value()` is that of a request; undefined: not given. */
 function input(one) {
   const common = { 'data-option': one.name, 'aria-label': one.name, title: one.help };
@@ -12,27 +15,45 @@ function input(one) {
     const node = el('input', { ...common, type: 'checkbox' });
     return { node, value: () => node.checked || undefined };
   }
-  if (one.words && !one.list) {
+  if (one.words && one.list) {
+    const boxes = one.words.map((word) =>
+      el('input', { type: 'checkbox', value: word, 'data-word': word, 'aria-label': `${one.name} ${word}` }),
+    );
+    const node = el(
+      'span',
+      { class: 'words', 'data-option': one.name, role: 'group', 'aria-label': one.name, title: one.help },
+      boxes.map((box, i) => el('label', {}, box, ` ${one.words[i]}`)),
+    );
+    return {
+      node,
+      value: () => {
+        const marked = boxes.filter((box) => box.checked).map((box) => box.value);
+        return marked.length ? marked : undefined;
+      },
+    };
+  }
+  const number = one.kind === 'number' || one.kind === 'count';
+  if (one.words) {
     const node = el(
       'select',
       common,
       el('option', { value: '' }, one.default ?? ''),
       ...one.words.map((word) => el('option', { value: word }, word)),
     );
-    return { node, value: () => node.value || undefined };
+    return { node, value: () => (node.value ? (number ? Number(node.value) : node.value) : undefined) };
   }
-  const number = one.kind === 'number' || one.kind === 'count';
-  const limits = number ? { min: one.low ?? (one.kind === 'count' ? 0 : null), max: one.high, step: one.kind === 'count' ? 1 : 'any' } : {};
+  const single = number && !one.list;
+  const limits = single ? { min: one.low ?? (one.kind === 'count' ? 0 : null), max: one.high, step: one.kind === 'count' ? 1 : 'any' } : {};
   const files = one.kind.startsWith('reads') ? { list: 'files-of-project' } : {};
   const node = el('input', {
     ...common,
     ...limits,
     ...files,
-    type: number ? 'number' : 'text',
+    type: single ? 'number' : 'text',
     placeholder: one.default,
     spellcheck: 'false',
   });
-  const read = (word) => (number ? Number(word) : word);
+  const read = (word) => (number ? Number(word.replace(',', '.')) : word);
   return {
     node,
     value: () => {
@@ -58,16 +79,19 @@ export function optionFields(command, given, change = () => {}) {
       return {
         name,
         value,
+        required: one.required,
         label: el(
-          'label',
+          one.list && one.words ? 'div' : 'label',
           { class: 'choice', title: one.help },
-          `${name.replaceAll('-', ' ')}${one.list ? ' (; between two)' : ''} `,
+          `${fieldName(name)}${one.list && !one.words ? ' (; between two)' : ''} `,
           node,
         ),
       };
     });
   return {
     elements: fields.map((one) => one.label),
+    /** Names of fields that have to be filled in and are empty. */
+    required: () => fields.filter((one) => one.required && one.value() === undefined).map((one) => fieldName(one.name)),
     values: () => Object.fromEntries(fields.map((one) => [one.name, one.value()]).filter(([, value]) => value !== undefined)),
   };
 }

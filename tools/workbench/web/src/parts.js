@@ -2,6 +2,7 @@
 import { el } from '../../../report/web/src/dom.js';
 import { chart } from '../../../report/web/src/chart.js';
 import { getJson, Refused } from './api.js';
+import { fieldName } from './options.js';
 import { store } from './store.js';
 
 export function button(label, act, attributes = {}) {
@@ -11,16 +12,48 @@ export function button(label, act, attributes = {}) {
     try {
       await act(node);
     } finally {
-      node.disabled = node.hasAttribute('data-needs-subject') && !store.rows;
+      node.disabled = Boolean(node.dataset.why);
     }
   });
   return node;
 }
 
+/** A button that cannot be pressed says why; `why` null: it can be pressed. */
+export function gate(node, why) {
+  node.dataset.own ??= node.dataset.why ? '' : node.title;
+  node.disabled = Boolean(why);
+  node.title = why ?? node.dataset.own;
+  if (why) node.dataset.why = why;
+  else delete node.dataset.why;
+}
+
 export const panel = (title, ...children) => el('section', { class: 'panel' }, title ? el('h2', {}, title) : null, ...children);
 
+export const kNoSubject = 'Choose a machine and measurements at the top first';
+
 /** Attributes of a button that a machine and rows have to be chosen for. */
-export const needsSubject = { 'data-needs-subject': '', disabled: '' };
+export const needsSubject = { 'data-needs-subject': '', 'data-why': kNoSubject, title: kNoSubject, disabled: '' };
+
+/** A message of a command in the words of the page: an option that has a field is called by the field. `typed`: the command. */
+export function pageWords(message, typed) {
+  const command = store.commands
+    .filter((one) => `${typed ?? ''} `.startsWith(`vernier ${one.name} `))
+    .sort((a, b) => b.name.length - a.name.length)[0];
+  // A whole command is for the terminal.
+  if (!command || /\bvernier [a-z]/.test(message)) return message;
+  const has = (name) => command.options.some((one) => one.name === name);
+  const accepted = message.replace(/;((?: --accept [\w-]+)+) overrides\s*$/, (whole, list) =>
+    has('accept')
+      ? `. If you accept this, mark ${list
+          .trim()
+          .split(/\s*--accept /)
+          .filter(Boolean)
+          .map((rule) => `"${rule}"`)
+          .join(', ')} in the field "accept".`
+      : whole,
+  );
+  return accepted.replace(/--([a-z][\w-]*)/g, (whole, name) => (has(name) ? `the field "${fieldName(name)}"` : whole));
+}
 
 /** What stands where there is nothing to show yet: what to choose, or why the chosen rows cannot be read. */
 export const nothingYet = () =>
@@ -42,10 +75,11 @@ export const figure = (label, options, caption = null) =>
 export async function showError(box, error) {
   if (!(error instanceof Refused)) throw error;
   const where = error.message.match(/([^\s:"]+):(\d+): (?:"(.*?)": )?/);
-  box.replaceChildren(el('p', { class: 'error', role: 'alert' }, error.message));
+  box.replaceChildren(el('p', { class: 'error', role: 'alert' }, pageWords(error.message, error.job?.command)));
   if (!where) return;
   try {
     const context = await getJson('/api/lines', { name: where[1], line: where[2] });
+    if (!context.lines.length) return; // a workbook: its rows are no lines
     box.append(
       el(
         'pre',

@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
-import { fileAddress, freeName, getJson, postJson, putFile, refresh, run } from './api.js';
+import { deleteFile, fileAddress, freeName, postJson, putFile, refresh, run } from './api.js';
 import { beginPanel } from './begin.js';
+import { importInstrument } from './instrument.js';
 import { optionFields } from './options.js';
-import { button, panel, showError } from './parts.js';
+import { button, guarded, panel, showError } from './parts.js';
 import { loadRows } from './rows.js';
 import { importSheet } from './sheet.js';
 import { stoodPanel } from './stood.js';
 import { on, store } from './store.js';
+import { adviceOn, forget, kindAction, kindOf, kindOfName, kindWords } from './uses.js';
 
-const kKinds = {
-  machine: 'machine',
-  measurement: 'measurement',
-  sheet: 'spreadsheet, to be imported',
-  instrument: 'instrument file, to be imported',
-  report: 'report',
-  image: 'image',
-  key: 'key',
-  other: '',
-};
 const size = (bytes) => (bytes < 10000 ? `${bytes} B` : bytes < 1e7 ? `${Math.round(bytes / 1000)} kB` : `${Math.round(bytes / 1e6)} MB`);
 
 /** Choose what everything else is about. */
@@ -33,62 +25,145 @@ export async function choose(machine, measurements) {
   await loadRows();
 }
 
-const kSheet = /\.(csv|xlsx|txt|tsv|dat|asc)$/i;
-// What a CSV is, by its name and time: asked once.
-const kinds = new Map();
-
-/** Is it a measurement file, or a table that has to be read into one? */
-async function isSheet(name) {
-  if (!/\.csv$/i.test(name)) return kSheet.test(name);
-  const file = store.files.find((one) => one.name === name);
-  const key = `${name} ${file?.modified_s} ${file?.bytes}`;
-  if (!kinds.has(key))
-    kinds.set(
-      key,
-      getJson('/api/kind', { name }).catch(() => ({ kind: 'measurement' })),
-    );
-  return (await kinds.get(key)).kind === 'sheet';
-}
-
-/** The kind of `vernier import` that reads a file of the project without further options. */
-const importerOf = (name) => store.files.find((one) => one.name === name)?.importer;
-
 /** Makes a measurement of a file of the project, as its kind asks for. `beside`: measurements to use with it. */
-async function importFile(name, box, repair, beside = []) {
+async function importFile(name, kind, box, repair, beside = []) {
   const done = (output) => choose(store.machine, [...beside, output]);
-  const kind = importerOf(name);
-  if (kind) {
+  if (kind === 'printer') return importInstrument(box, 'printer', name, done);
+  if (kind === 'trace') return importInstrument(box, 'ballbar-trace', name, done);
+  if (kind === 'instrument') {
+    const { importer } = store.files.find((one) => one.name === name);
     const output = freeName(name.replace(/\.[^.]*$/, ''), '.csv');
-    const fields = kind === 'ballbar' ? { files: [name], ...repair } : { file: name };
-    await run({ command: `import ${kind}`, ...fields, output });
+    const fields = importer === 'ballbar' ? { files: [name], ...repair } : { file: name };
+    await run({ command: `import ${importer}`, ...fields, output });
     return done(output);
   }
   return importSheet(box, name, done);
 }
 
-/** A dropped file becomes part of the project; what is no measurement file yet is imported. `beside`: measurements to use with it. */
-async function take(file, repair, box, beside) {
-  const bytes = await file.arrayBuffer();
+/** A machine file for the description of a robot. */
+async function machineOfRobot(name) {
+  const stem = name.replace(/\.[^.]*$/, ''),
+    output = freeName(stem, '.xml');
+  await run({ command: 'new', type: 'robot', urdf: name, output, measurements: freeName(`${stem}_survey`, '.csv') });
+  return choose(output, store.measurements);
+}
+
+/** Uses a file of the project: chooses it, or makes a measurement or a machine file of it. */
+async function use(name, kind, box, repair, beside = []) {
+  if (kind === 'machine') return choose(name, store.measurements);
+  if (kind === 'robot') return machineOfRobot(name);
+  if (kind === 'measurement') return choose(store.machine, [...beside, name]);
+  return importFile(name, kind, box, repair, beside);
+}
+
+/** Asks in a box, with a button for each answer [label, value]; the first answer is the usual one. */
+function question(box, words, answers) {
+  return new Promise((answered) => {
+    const node = el(
+      'div',
+      { class: 'question', role: 'alertdialog', 'aria-label': words },
+      el('p', {}, words),
+      el(
+        'div',
+        { class: 'controls' },
+        answers.map(([label, value], i) =>
+          button(
+            label,
+            () => {
+              node.remove();
+              answered(value);
+            },
+            { class: i ? 'quiet' : null, 'data-answer': value },
+          ),
+        ),
+      ),
+    );
+    box.append(node);
+    node.querySelector('button').focus();
+  });
+}
+
+/** Does a command of the history read a file or write it? */
+const inHistory = (name, what) =>
+  store.history.some((one) => !one.undone && (one.outputs ?? []).includes(name) === (what === 'written') && one.command.includes(name));
+
+const kNotAgain = ' Commands of the history used it: history.sh then does not make the same files again.';
+
+/** The name under which a dropped file is kept; null: it is not to be kept. */
+async function nameToKeep(file, ask) {
   const name = file.name.replace(/[\\/:]/g, '_').replace(/^[.\-~ ]+/, '');
-  await putFile(name, bytes);
+  if (!store.files.some((one) => one.name === name)) return { name, replace: false };
+  const other = freeName(name.replace(/\.[^.]*$/, ''), name.match(/\.[^.]*$/)?.[0] ?? '');
+  const answer = await question(
+    ask,
+    `${name}: the project has a file of this name. Replace it?${inHistory(name, 'read') ? kNotAgain : ''}`,
+    [
+      ['Replace', 'replace'],
+      [`Keep both, the new one as ${other}`, 'both'],
+      ['Do not take it in', 'none'],
+    ],
+  );
+  if (answer === 'none') return null;
+  return answer === 'both' ? { name: other, replace: false } : { name, replace: true };
+}
+
+/** Deletes a file of the project after a question. */
+async function deleteAsked(name, ask) {
+  const words = inHistory(name, 'written')
+    ? ' A command of the history wrote it: history.sh makes it again.'
+    : inHistory(name, 'read')
+      ? kNotAgain
+      : '';
+  const answer = await question(ask, `Delete ${name}? It cannot be brought back.${words}`, [
+    ['Delete', 'delete'],
+    ['Keep it', 'keep'],
+  ]);
+  if (answer !== 'delete') return;
+  await deleteFile(name);
   await refresh();
-  if (/\.xml$/i.test(name)) return choose(name, store.measurements);
-  if (/\.urdf$/i.test(name)) {
-    const stem = name.replace(/\.[^.]*$/, ''),
-      output = freeName(stem, '.xml');
-    await run({ command: 'new', type: 'robot', urdf: name, output, measurements: freeName(`${stem}_survey`, '.csv') });
-    return choose(output, store.measurements);
+  if (name === store.machine || store.measurements.includes(name))
+    await choose(
+      name === store.machine ? '' : store.machine,
+      store.measurements.filter((one) => one !== name),
+    );
+}
+
+/** A dropped file becomes part of the project; what is no measurement file yet is imported. `beside`: measurements to use with it. */
+async function take(file, { repair, box, beside, ask, notes }) {
+  const kept = await nameToKeep(file, ask);
+  if (!kept) return;
+  const { name } = kept;
+  await putFile(name, await file.arrayBuffer(), kept.replace);
+  forget(name);
+  await refresh();
+  const kind = await kindOfName(name),
+    advice = adviceOn(kind);
+  if (!advice) {
+    await use(name, kind, box, repair, beside);
+    return;
   }
-  if (importerOf(name) || (kSheet.test(name) && (await isSheet(name)))) return importFile(name, box, repair, beside);
-  if (/\.csv$/i.test(name)) return choose(store.machine, [...beside, name]);
-  return null;
+  const note = el('p', { class: 'note', role: 'status', 'data-advice': name }, `${name} ${advice} `);
+  if (!kindAction(kind) && ['workbook', 'unused'].includes(kind))
+    note.append(
+      button(
+        'Delete it',
+        async () => {
+          await deleteFile(name);
+          note.remove();
+          await refresh();
+        },
+        { class: 'quiet' },
+      ),
+    );
+  notes.append(note);
 }
 
 /** Shows the line of a dropped file that could not be read: it was not kept, so its text comes from the browser. */
 async function showBadLine(box, file, message) {
   const where = message.match(/:(\d+): /);
   box.replaceChildren(el('p', { class: 'error', role: 'alert' }, message));
-  if (!where || file.size > 64 << 20) return;
+  // The rows of a workbook are no lines.
+  if (!where || file.size > 64 << 20 || /\.(xlsx|xls|ods)$/i.test(file.name)) return;
   const lines = (await file.text()).split('\n'),
     at = Number(where[1]);
   box.append(
@@ -103,30 +178,31 @@ async function showBadLine(box, file, message) {
   );
 }
 
-function fileRow(file, importIt) {
-  const usable = { machine: 'use', measurement: 'use', sheet: 'import', instrument: 'import' }[file.kind];
-  const act = !usable
-    ? null
-    : button(
-        usable,
-        () => {
-          if (usable === 'import') return importIt(file.name);
-          return file.kind === 'machine' ? choose(file.name, store.measurements) : choose(store.machine, [file.name]);
-        },
-        { class: 'quiet' },
-      );
+function fileRow(file, kind, act) {
+  const { name } = file,
+    label = kindAction(kind);
   const also =
-    file.kind === 'measurement' && store.measurements.length && !store.measurements.includes(file.name)
-      ? button('use too', () => choose(store.machine, [...store.measurements, file.name]), { class: 'quiet' })
+    kind === 'measurement' && store.measurements.length && !store.measurements.includes(name)
+      ? button('use too', () => choose(store.machine, [...store.measurements, name]), { class: 'quiet' })
       : null;
-  const chosen = file.name === store.machine || store.measurements.includes(file.name);
+  const chosen = name === store.machine || store.measurements.includes(name);
+  // A report is opened; anything else is saved under its name.
+  const link = kind === 'report' ? { target: '_blank', rel: 'noopener' } : { download: name.replace(/.*\//, '') };
   return el(
     'tr',
-    { class: chosen ? 'chosen' : null },
-    el('td', { class: 'text' }, el('a', { href: fileAddress(file.name), target: '_blank', rel: 'noopener' }, file.name)),
-    el('td', { class: 'text' }, kKinds[file.kind] ?? ''),
+    { class: chosen ? 'chosen' : null, 'data-file': name, 'data-kind': kind },
+    el('td', { class: 'text' }, el('a', { href: fileAddress(name), ...link }, name)),
+    el('td', { class: 'text' }, kindWords(kind)),
     el('td', { class: 'num' }, size(file.bytes)),
-    el('td', { class: 'text' }, act, ' ', also),
+    el(
+      'td',
+      { class: 'text' },
+      label ? button(label, () => act.use(name, kind), { class: 'quiet use' }) : null,
+      ' ',
+      also,
+      ' ',
+      button('delete', () => act.remove(name), { class: 'quiet delete', 'aria-label': `delete ${name}` }),
+    ),
   );
 }
 
@@ -158,6 +234,7 @@ function history() {
 
 export function projectView(root) {
   const error = el('div', { id: 'drop-error' }),
+    notes = el('div', { id: 'drop-notes' }),
     box = el('div', { id: 'import-box' });
   const repair = optionFields('import ballbar', ['files', 'output']);
   const pick = el('input', { type: 'file', multiple: '', id: 'file-input', 'aria-label': 'Files to take into the project' });
@@ -167,19 +244,20 @@ export function projectView(root) {
     el(
       'p',
       {},
-      'Drop what was measured (.csv, .xlsx, .txt, files of an instrument) and machine files (.xml, .urdf) here, or choose them: ',
+      'Drop what was measured (.csv, .xlsx, .txt, files of an instrument, printer.cfg or klippy.log of a 3D printer) and machine files (.xml, .urdf) here, or choose them: ',
     ),
     pick,
     repair.elements,
   );
   const takeAll = async (files) => {
     error.replaceChildren();
+    notes.replaceChildren();
     // Measurements of one drop belong together: two instruments at one machine.
     const before = new Set(store.measurements);
     for (const file of files) {
       try {
         const beside = store.measurements.filter((name) => !before.has(name));
-        await take(file, repair.values(), box, beside);
+        await take(file, { repair: repair.values(), box, beside, ask: error, notes });
       } catch (why) {
         await showBadLine(error, file, why.message);
         return;
@@ -201,29 +279,33 @@ export function projectView(root) {
     if (event.dataTransfer?.files.length) takeAll([...event.dataTransfer.files]);
   });
   const files = el('tbody', { id: 'files' });
-  const again = async (name) => {
-    error.replaceChildren();
-    await importFile(name, box, repair.values()).catch((why) => showError(error, why));
+  const asked = el('div', { id: 'file-error' });
+  const act = {
+    use: async (name, kind) => {
+      error.replaceChildren();
+      await use(name, kind, box, repair.values()).catch((why) => showError(error, why));
+      // The panel that asks about a file is above the table.
+      if (box.childElementCount) box.scrollIntoView({ block: 'nearest' });
+    },
+    remove: (name) => guarded(asked, () => deleteAsked(name, asked)),
   };
   let drawing = 0;
   const draw = async () => {
     const mine = ++drawing;
-    files.replaceChildren(...store.files.map((file) => fileRow(file, again)));
-    const known = await Promise.all(
-      store.files.map(async (file) => (file.kind === 'measurement' && (await isSheet(file.name)) ? { ...file, kind: 'sheet' } : file)),
-    );
-    if (mine === drawing) files.replaceChildren(...known.map((file) => fileRow(file, again)));
+    const known = await Promise.all(store.files.map(async (file) => [file, await kindOf(file)]));
+    if (mine === drawing) files.replaceChildren(...known.map(([file, kind]) => fileRow(file, kind, act)));
   };
   on('project', draw);
   on('rows', draw);
   draw();
   root.append(
-    panel('Take in', zone, error),
+    panel('Take in', zone, error, notes),
     box,
     stoodPanel(choose),
     beginPanel(choose),
     panel(
       'Files',
+      asked,
       el(
         'div',
         { class: 'scroll' },

@@ -2,7 +2,7 @@
 import { el } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
 import { getJson } from './api.js';
-import { guarded, panel } from './parts.js';
+import { guarded, pageWords, panel } from './parts.js';
 import { emit, on, store } from './store.js';
 
 /** The rules in words for the person at the machine (tools/docs/safety.md has their reasons). */
@@ -91,7 +91,8 @@ export function safetyPanel() {
     const holds = unknown.length
       ? `What is known holds; ${unknown.length} of ${sheet.rules.length} rules cannot be evaluated: ${reasonOf(unknown)}`
       : 'Every rule holds.';
-    words.textContent = sheet ? (sheet.ok ? holds : `Not safe: ${sheet.refusal}`) : '';
+    const refusal = sheet ? pageWords(sheet.refusal, 'vernier compile') : '';
+    words.textContent = sheet ? (sheet.ok ? holds : refusal.replace(/^n/, 'N')) : '';
     words.classList.toggle('error', Boolean(sheet) && !sheet.ok);
     words.dataset.ok = sheet ? sheet.ok : '';
     box.replaceChildren(...(sheet ? [safetyTable(sheet.rules)] : []));

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
 import { freeName, run } from './api.js';
-import { button, guarded, panel } from './parts.js';
+import { button, gate, guarded, panel } from './parts.js';
+import { kDeclareBed } from './instrument.js';
 import { on, store } from './store.js';
+
+const kMaybeTouched = `If these rows are touches (column "on"): ${kDeclareBed}`;
 
 /** Columns that the refusal of rows asks for: [name[unit]]; the file that lacks them. */
 function asked(refusal) {
@@ -24,7 +27,9 @@ export function stoodPanel(choose) {
     const { file, columns } = asked(store.refusal);
     if (!store.refusal) return room.replaceChildren();
     const words = el('p', { class: 'error', role: 'alert' }, store.refusal);
-    if (!columns.length || !file) return room.replaceChildren(panel('These rows cannot be read', words));
+    if (!columns.length || !file) return room.replaceChildren(
+        panel('These rows cannot be read', words, /no measured column .*\bon\b/.test(store.refusal) ? el('p', {}, kMaybeTouched) : null),
+      );
     const fields = columns.map((column) => [column, number(`stood-${column.replace(/\W.*/, '')}`, `${column} stood at`, '8')]);
     const u = number('stood-u', 'standard uncertainty of the readings, um', '5');
     const add = button(
@@ -43,7 +48,8 @@ export function stoodPanel(choose) {
       { id: 'stood-add' },
     );
     const ready = () => {
-      add.disabled = fields.some(([, input]) => !Number.isFinite(parseFloat(value(input))));
+      const open = fields.filter(([, input]) => !Number.isFinite(parseFloat(value(input)))).map(([column]) => column);
+      gate(add, open.length ? `State a number for ${open.join(', ')} first` : null);
     };
     for (const [, input] of fields) input.addEventListener('input', ready);
     ready();

@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// everyday.mjs WHICH BIN SOURCE [PICTURES]: from files to a corrected machine without a board and without a terminal: the tables of a
+// control, a printer, and files that come again, come wrong, or are of no use. In a real headless browser, as journey.mjs.
+import { execFileSync } from 'node:child_process';
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import assert from 'node:assert/strict';
+import { bin, data, folder, journey, picture, source, text, top, vernier, view } from './rig.mjs';
+
+const bytes = (name) => readFileSync(join(source, 'tests/data', name));
+const quiet = (...words) => execFileSync(vernier, words, { cwd: top, stdio: 'ignore' });
+const made = (name) => ({ name, bytes: readFileSync(join(top, name)) });
+const command = (page) => text(page, '#command');
+const words = (page, selector, part) =>
+  page.until(`document.querySelector(${JSON.stringify(selector)})?.textContent.includes(${JSON.stringify(part)})`, `${selector}: ${part}`);
+const chosen = (page, machine) => page.until(`document.getElementById('machine').value === ${JSON.stringify(machine)}`, machine);
+const measured = (page, name) => page.until(`document.getElementById('measurement').value === ${JSON.stringify(name)}`, name);
+const title = (page, selector) => page.evaluate(`document.querySelector(${JSON.stringify(selector)}).title`);
+const disabled = (page, selector) => page.evaluate(`document.querySelector(${JSON.stringify(selector)}).disabled`);
+const files = (page, id) =>
+  page.evaluate(`[...document.querySelectorAll('#${id} .files a')].map((one) => [one.textContent, one.getAttribute('download')])`);
+
+/** Three laser runs of a shop and the fits of two machine files: the second has ranges that nobody measured. */
+function shopData() {
+  for (const axis of ['X', 'Y', 'Z'])
+    quiet(
+      'import',
+      'table',
+      join(source, `tests/data/router/Portal_${axis}.csv`),
+      '--set',
+      'u[um]=1.2',
+      '--check-every',
+      '5',
+      '-o',
+      `${axis}.csv`,
+    );
+  for (const [name, range] of [
+    ['router', 1200],
+    ['long', 2400],
+  ]) {
+    quiet(
+      'new',
+      'gantry',
+      '--axis',
+      `X:0:${range}`,
+      '--axis',
+      'Y:0:800',
+      '--axis',
+      'Z:-150:0',
+      '--errors',
+      'positioning',
+      '-o',
+      `${name}-0.xml`,
+    );
+    quiet('fit', `${name}-0.xml`, 'X.csv', 'Y.csv', 'Z.csv', '-o', `${name}.xml`);
+  }
+}
+
+/** The tables of a control for a machine that is safe to run; each format of the program can be had. */
+async function tablesOfAControl(page) {
+  await page.drop([made('router.xml'), made('X.csv'), made('Y.csv'), made('Z.csv')]);
+  await chosen(page, 'router.xml');
+  await measured(page, 'X.csv + Y.csv + Z.csv');
+  await view(page, 'export');
+  assert.ok(await disabled(page, '#do-export'));
+  assert.equal(await title(page, '#do-export'), 'Choose the control or the format first');
+  const help = execFileSync(vernier, ['completion', 'json'], { maxBuffer: 1 << 24 });
+  const formats = JSON.parse(help)
+    .map((one) => one.name)
+    .filter((name) => name.startsWith('export '))
+    .map((name) => name.slice(7));
+  assert.deepEqual(
+    (await page.evaluate("[...document.getElementById('export-format').options].map((one) => one.value)")).slice(1).sort(),
+    formats.sort(),
+  );
+  await page.choose('#export-format', 'siemens');
+  for (const name of ['step', 'tolerance', 'reference', 'numbers', 'leave-out', 'at', 'accept'])
+    assert.ok(
+      await page.evaluate(`document.querySelector('#export-options [data-option="${name}"]')`.concat(' !== null')),
+      `a field for ${name}`,
+    );
+  await page.click('#do-export');
+  await words(page, '#export-result', 'with the files');
+  assert.equal(await command(page), 'vernier export siemens router.xml -o siemens-router');
+  quiet('export', 'siemens', join(folder, 'router.xml'), '-o', 'by_hand');
+  const names = readdirSync(join(top, 'by_hand'));
+  assert.deepEqual((await files(page, 'export-result')).map(([name]) => name).sort(), names.map((name) => `siemens-router/${name}`).sort());
+  for (const name of names)
+    assert.equal(readFileSync(join(folder, 'siemens-router', name), 'latin1'), readFileSync(join(top, 'by_hand', name), 'latin1'));
+  // Each can be saved under its own name.
+  const [[name, saved]] = await files(page, 'export-result');
+  assert.equal(`siemens-router/${saved}`, name);
+  const got = await page.evaluate(`fetch(document.querySelector('#export-result .files a').href).then((one) => one.text())`);
+  assert.equal(got, readFileSync(join(folder, name), 'utf8'));
+  await picture(page, 'export', '#export-format');
+  // A format without a folder; what a format cannot express is told in the words of the page.
+  await page.choose('#export-format', 'isg-csv');
+  await page.click('#do-export');
+  await words(page, '#export-result', 'One file is written');
+  assert.ok(existsSync(join(folder, 'isg-csv-router.csv')));
+  await page.choose('#export-format', 'grbl');
+  await page.click('#do-export');
+  await words(page, '#export-error', 'the field "steps"');
+  assert.equal(await page.evaluate("document.querySelector('#guide [data-step=upload]').classList.contains('done')"), true);
+}
+
+/** A machine that is not safe everywhere: what is not met can be accepted on the page, for an image and for a control. */
+async function accepted(page) {
+  await view(page, 'project');
+  await page.drop([made('long.xml')]);
+  await chosen(page, 'long.xml');
+  await view(page, 'board');
+  await words(page, '#safety-words', 'mark "measured-range", "disturbed", "uncertainty" in the field "accept"');
+  assert.ok((await text(page, '#safety-words')).startsWith('Not safe to run: measured-range'), 'said once');
+  assert.ok(!(await text(page, '#safety-words')).includes('--accept'));
+  await page.click('#compile');
+  await words(page, '#board-error', 'in the field "accept"');
+  const mark = (view_id, rule) => page.click(`#view-${view_id} [data-option=accept] [data-word=${rule}]`);
+  for (const rule of ['measured-range', 'disturbed', 'uncertainty']) await mark('board', rule);
+  await picture(page, 'accept', '#compile');
+  await page.click('#compile');
+  await page.until("document.getElementById('bound')", 'the image', 60);
+  assert.ok((await command(page)).includes('--accept uncertainty --accept measured-range --accept disturbed'), await command(page));
+  await view(page, 'export');
+  await page.choose('#export-format', 'heidenhain');
+  await page.click('#do-export');
+  await words(page, '#export-error', 'in the field "accept"');
+  for (const rule of ['measured-range', 'disturbed', 'uncertainty']) await mark('export', rule);
+  await page.click('#do-export');
+  await words(page, '#export-result', 'with the files');
+  assert.ok(existsSync(join(folder, 'heidenhain-long')));
+}
+
+/** A part program with the correction, and the map in German. */
+async function programAndMap(page) {
+  await page.choose('#machine', 'router.xml');
+  await view(page, 'project');
+  await page.drop([{ name: 'part.nc', text: 'G21 G90\nG1 X100 Y100 Z-10 F1000\nG1 X600 Y300\nM2\n' }]);
+  await words(page, '[data-advice="part.nc"]', 'part program');
+  await view(page, 'export');
+  assert.ok(await disabled(page, '#do-correct'));
+  assert.equal(await title(page, '#do-correct'), 'State "path" first');
+  await page.type('#view-export [data-option=path]', 'part.nc');
+  await page.evaluate("document.querySelector('#view-export [data-option=path]').dispatchEvent(new Event('change'))");
+  await page.click('#do-correct');
+  await words(page, '#correct-result', 'The corrected file is written');
+  assert.ok(readFileSync(join(folder, 'part_corrected.nc'), 'utf8').includes('X'));
+  await view(page, 'compare');
+  await page.until("document.getElementById('compare-figures')", 'the comparison');
+  await page.choose('#report-language', 'de');
+  await view(page, 'export');
+  await page.click('#do-map');
+  await words(page, '#map-result', 'map-router.html');
+  assert.ok(readFileSync(join(folder, 'map-router.html'), 'utf8').includes('"language":"de"'), 'the map is German');
+}
+
+/** Three runs are chosen: the report about an axis takes the run along this axis; it is German. */
+async function positioning(page) {
+  await view(page, 'compare');
+  await page.until("document.getElementById('compare-figures')", 'the comparison');
+  await page.type('[aria-label="tolerance of A"]', '50');
+  await page.click('#handover-positioning');
+  await words(page, '#handover-answer', 'Not met');
+  assert.ok((await command(page)).startsWith('vernier evaluate iso230-2 X.csv --axis X '), await command(page));
+  assert.ok((await command(page)).includes('--language de'), await command(page));
+  assert.ok(readFileSync(join(folder, 'iso230-2_X.html'), 'utf8').includes('"language":"de"'), 'the report is German');
+}
+
+async function shop(page) {
+  shopData();
+  await tablesOfAControl(page);
+  await accepted(page);
+  await programAndMap(page);
+  await positioning(page);
+}
+
+/** The files of a printer, from its configuration to a configuration with the correction; the machine file is made on the page. */
+async function printer(page) {
+  await page.evaluate("document.getElementById('new-machine').open = true");
+  await page.type('#new-axes', 'X:0:235 Y:0:235 Z:0:250');
+  await page.type('#new-name', 'printer');
+  await page.click('#make-machine');
+  await chosen(page, 'printer.xml');
+  const mesh = Array.from(
+    { length: 5 },
+    (_, j) => `#*# \t  ${Array.from({ length: 5 }, (__, i) => (0.02 * i - 0.01 * j + 0.003 * i * i).toFixed(6)).join(', ')}\n`,
+  ).join('');
+  const config = `[printer]\nkinematics: cartesian\n[probe]\nx_offset: -38\ny_offset: -8\n#*# [bed_mesh default]\n#*# version = 1\n#*# points =\n${mesh}#*# x_count = 5\n#*# y_count = 5\n#*# mesh_x_pps = 2\n#*# mesh_y_pps = 2\n#*# algo = bicubic\n#*# tension = 0.2\n#*# min_x = 40.0\n#*# max_x = 180.0\n#*# min_y = 30.0\n#*# max_y = 180.0\n`;
+  await page.drop([{ name: 'printer.cfg', text: config }]);
+  await measured(page, 'printer_read.csv');
+  await words(page, '#import-box', '25 touches of the artefact "bed"');
+  assert.equal(
+    await page.evaluate("document.querySelector('#history code').textContent"),
+    'vernier import printer printer.cfg -o printer_read.csv',
+  );
+  assert.equal(await page.evaluate('document.querySelector(\'[data-file="printer.cfg"]\').dataset.kind'), 'printer');
+  await picture(page, 'printer', '#import-box .source');
+  // The machine file declares no bed: said with the way to one that does.
+  await words(page, '#stood-room', 'write bed:plane into the field "artefact"');
+  await page.evaluate("document.querySelector('#begin [data-command=new]').open = true");
+  await page.type('#begin [data-option=artefact]', 'bed:plane');
+  await page.type('#new-name', 'with_bed');
+  await page.click('#make-machine');
+  await chosen(page, 'with_bed.xml');
+  assert.ok(readFileSync(join(folder, 'with_bed.xml'), 'utf8').includes('<artefact name="bed" type="plane"/>'));
+  await page.until("document.getElementById('begin').hidden", 'the rows to be read');
+  // Read with another offset: the field is there.
+  await page.click('#read-differently');
+  await page.type('#import-box [data-option=u]', '5');
+  await page.type('#import-box [data-option=offset]', '-30; -10');
+  await page.click('#do-import');
+  await measured(page, 'printer_read-2.csv');
+  assert.equal(
+    await page.evaluate("document.querySelector('#history li:last-child code').textContent"),
+    'vernier import printer printer.cfg --offset -30 --offset -10 --u 5 -o printer_read-2.csv',
+  );
+  // A configuration without a mesh says what is missing, and does not end in silence.
+  await page.drop([{ name: 'bare.cfg', text: '[printer]\nkinematics: cartesian\n' }]);
+  await words(page, '#import-box .error', 'no configuration with a saved mesh');
+  // RepRapFirmware, by the contents of a .csv.
+  await page.drop([
+    {
+      name: 'heightmap.csv',
+      text: 'RepRapFirmware height map file v2 generated at 2026-01-01 10:00, min error -0.010, max error 0.030, mean 0.010, deviation 0.010\naxis0,axis1,min0,max0,min1,max1,radius,spacing0,spacing1,num0,num1\nX,Y,20.00,180.00,20.00,180.00,-1.00,80.00,80.00,3,3\n0.010,0.020,0.030\n-0.010,0.000,0.010\n0.000,0.010,0.020\n',
+    },
+  ]);
+  await measured(page, 'heightmap_read.csv');
+  await page.choose('#measurement', 'printer_read.csv');
+  await view(page, 'add');
+  await page.click('#fit');
+  await chosen(page, 'with_bed-fitted.xml');
+  await view(page, 'export');
+  await page.choose('#export-format', 'klipper');
+  await page.evaluate(
+    "[...document.querySelectorAll('#view-export [data-option=accept] input')].forEach((one) => { one.checked = true; })",
+  );
+  await page.click('#do-export');
+  await words(page, '#export-result', 'klipper-with_bed-fitted/');
+}
+
+/** Waits until a file of the project has a text. */
+async function has(name, part) {
+  for (let i = 0; i < 200 && !readFileSync(join(folder, name), 'utf8').includes(part); ++i)
+    await new Promise((done) => setTimeout(done, 50));
+  assert.ok(readFileSync(join(folder, name), 'utf8').includes(part), `${name} has ${part}`);
+}
+
+/** Files that come again, are taken out, or are of no use: nothing ends in silence or in a refusal without a way on. */
+async function again(page) {
+  // A table with a wrong number, corrected and dropped again under its name.
+  await page.drop([{ name: 'dial.csv', text: 'X[mm],x[mm],u[um]\n0,0.001,1\n100,100.002,1\n200,203.004,1\n' }]);
+  await measured(page, 'dial.csv');
+  await page.drop([{ name: 'dial.csv', text: 'X[mm],x[mm],u[um]\n0,0.001,1\n100,100.002,1\n200,200.004,1\n' }]);
+  await words(page, '#drop-error .question', 'the project has a file of this name. Replace it?');
+  await picture(page, 'replace', '#drop-error');
+  await page.click('#drop-error [data-answer=replace]');
+  await has('dial.csv', '200.004');
+  // A spreadsheet that became a measurement file, and one that is kept beside.
+  await page.drop([{ name: 'dial.csv', text: 'X soll;Abweichung X\r\nmm;um\r\n0,00;1,5\r\n100,00;-2,5\r\n200,00;3,0\r\n' }]);
+  await page.click('#drop-error [data-answer=both]');
+  await measured(page, 'dial-2_read.csv');
+  assert.ok(readFileSync(join(folder, 'dial.csv'), 'utf8').includes('200.004'), 'the other one stays');
+  await page.drop([{ name: 'dial.csv', text: 'X[mm],x[mm]\n0,0\n' }]);
+  await page.click('#drop-error [data-answer=none]');
+  await page.until("!document.querySelector('.question')", 'the question to go');
+  assert.ok(readFileSync(join(folder, 'dial.csv'), 'utf8').includes('200.004'), 'not taken in');
+  // A replacement with an error replaces nothing.
+  await page.drop([{ name: 'dial.csv', text: 'X[mm],x[mm],u[um]\n0,1\n' }]);
+  await page.click('#drop-error [data-answer=replace]');
+  await words(page, '#drop-error .error', 'dial.csv:2');
+  assert.ok(readFileSync(join(folder, 'dial.csv'), 'utf8').includes('200.004'), 'the old file stays');
+  // Deleted after a question, which says what the history loses.
+  const remove = (name) => page.click(`[data-file="${name}"] .delete`);
+  await remove('dial-2.csv');
+  await words(page, '#file-error .question', 'history.sh then does not make the same files again');
+  await page.click('#file-error [data-answer=keep]');
+  assert.ok(existsSync(join(folder, 'dial-2.csv')));
+  await remove('dial-2_read.csv');
+  await words(page, '#file-error .question', 'history.sh makes it again');
+  await page.click('#file-error [data-answer=delete]');
+  await page.until(
+    "!document.querySelector('[data-file=\"dial-2_read.csv\"]') && document.getElementById('measurement').value === ''",
+    'the chosen file to go',
+  );
+  assert.ok(!existsSync(join(folder, 'dial-2_read.csv')));
+  // Of no use: said, with what to do, and deleted in one press.
+  await page.drop([
+    { name: 'foto.png', text: 'x' },
+    { name: 'alt.xls', text: 'x' },
+  ]);
+  await words(page, '[data-advice="foto.png"]', 'cannot use a file of this kind');
+  await words(page, '[data-advice="alt.xls"]', 'save it as .xlsx or as .csv');
+  await words(page, '[data-file="foto.png"]', 'the workbench cannot use it');
+  await page.click('[data-advice="foto.png"] button');
+  await page.until('!document.querySelector(\'[data-file="foto.png"]\')', 'the picture to go');
+  // An error in a workbook shows no bytes of the zip file.
+  await page.drop([{ name: 'broken.xlsx', text: 'PK\u0003\u0004\u0000\u0000no workbook' }]);
+  await words(page, '#import-box', 'broken.xlsx');
+  assert.equal(await page.evaluate("document.querySelectorAll('#import-box .source, #drop-error .source').length"), 0);
+  // What cannot be pressed says why.
+  await view(page, 'compare');
+  for (const selector of ['#handover-compare', '#handover-diagnose', '#handover-positioning'])
+    assert.equal(await title(page, selector), 'Choose a machine and measurements at the top first', selector);
+  await view(page, 'board');
+  assert.equal(await title(page, '#upload'), 'There is no image yet: press Compile first');
+  await view(page, 'fleet');
+  assert.ok((await title(page, '#fleet-look')).startsWith('State the registry first'));
+}
+
+/** A small screen with a long formula, and paper: nothing is wider than the page, no number is divided. */
+async function looks(page) {
+  const sum = Array.from({ length: 40 }, (_, i) => `+k*X*${i + 1}`).join('');
+  await page.drop([
+    {
+      name: 'm.xml',
+      text: `<machine name="m"><variables><static><k value="0" nominal="0" unit="1"/></static><machineaxes><X min="0" max="100"/></machineaxes></variables><transforms><sixdof n="1" X="X${sum}"/></transforms></machine>`,
+    },
+    { name: 'rows.csv', text: 'X[mm],x[mm],u[um]\n0,0.001,1\n50,50.002,1\n100,100.004,1\n' },
+  ]);
+  await measured(page, 'rows.csv');
+  const screen = (media, width) =>
+    Promise.all([
+      page.send('Emulation.setDeviceMetricsOverride', { width, height: 600, deviceScaleFactor: 1, mobile: false }),
+      page.send('Emulation.setEmulatedMedia', { media }),
+    ]);
+  await screen('', 800);
+  for (const name of ['add', 'export', 'project']) {
+    await view(page, name);
+    await page.until("document.querySelectorAll('#term-place option').length > 0", 'the places of a term');
+    assert.ok(await page.evaluate('document.documentElement.scrollWidth <= innerWidth'), `${name} fits 800 px`);
+  }
+  await view(page, 'board');
+  await page.until("document.querySelector('#safety tbody tr')", 'the sheet');
+  for (const media of ['', 'print']) {
+    await screen(media, 740);
+    const lines = await page.evaluate(
+      "[...document.querySelectorAll('#safety td.num, #safety th, #safety td.answer')].map((one) => { const r = document.createRange(); r.selectNodeContents(one); return [one.textContent, new Set([...r.getClientRects()].map((b) => Math.round(b.top))).size]; })",
+    );
+    assert.ok(lines.length > 30);
+    for (const [words_of, count] of lines) assert.ok(count <= Math.max(1, words_of.split(' ').length), `"${words_of}" on ${count} lines`);
+  }
+  await screen('', 1280);
+  // The name of the folder is whole.
+  assert.ok(
+    await page.evaluate("(() => { const one = document.querySelector('.folder'); return one.scrollWidth <= one.clientWidth; })()"),
+    'the name of the folder',
+  );
+}
+
+assert.ok(bin && data);
+await journey({ shop, printer, again, looks }, { shop: /422/, printer: /422/, again: /422/ });

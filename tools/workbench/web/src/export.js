@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// For a control without a board: its tables, a corrected part program, and the map of what is left.
+import { el } from '../../../report/web/src/dom.js';
+import { fileAddress, freeName, run } from './api.js';
+import { reportHead } from './handover.js';
+import { optionFields } from './options.js';
+import { button, gate, guarded, panel } from './parts.js';
+import { emit, on, store } from './store.js';
+
+const kNoMachine = 'Choose a machine at the top first';
+const stemOf = (name) => name.replace(/.*\//, '').replace(/\.[^.]*$/, '');
+
+/** A link that saves a file of the project under its own name; a report is opened. */
+const fileLink = (name) =>
+  el(
+    'a',
+    /\.html$/i.test(name)
+      ? { href: fileAddress(name), target: '_blank', rel: 'noopener' }
+      : { href: fileAddress(name), download: name.replace(/.*\//, '') },
+    name,
+  );
+
+/** What a command printed, and its files. */
+function outcome(box, { text }, files, words) {
+  // The command names its files too; here they are links.
+  const lines = text.split('\n').filter((line) => line.trim() && !files.includes(line.trim()));
+  box.replaceChildren(
+    el('p', { class: 'verdict', role: 'status' }, words),
+    lines.length ? el('pre', { class: 'source wrap' }, lines.join('\n')) : '',
+    el(
+      'ul',
+      { class: 'files' },
+      files.map((name) => el('li', {}, fileLink(name))),
+    ),
+  );
+}
+
+/** Whenever a machine is chosen or the fields change: why the button cannot be pressed. */
+function gated(node, why) {
+  const now = () => gate(node, store.machine ? why() : kNoMachine);
+  on('rows', now);
+  now();
+  return now;
+}
+
+function controlPanel() {
+  const formats = store.commands.filter((one) => one.name.startsWith('export '));
+  const error = el('div', { id: 'export-error' }),
+    result = el('div', { id: 'export-result' }),
+    options = el('div', { class: 'controls', id: 'export-options' });
+  const format = el(
+    'select',
+    { id: 'export-format', 'aria-label': 'control' },
+    el('option', { value: '' }, 'choose the control or the format'),
+    formats.map((one) => el('option', { value: one.name.slice('export '.length) }, one.help)),
+  );
+  let fields = null;
+  const write = button(
+    'Write the files',
+    () =>
+      guarded(error, async () => {
+        result.replaceChildren();
+        const command = `export ${format.value}`;
+        const folder = formats.find((one) => one.name === command).options.find((one) => one.name === 'output').kind === 'writes-folder';
+        const output = freeName(`${format.value}-${stemOf(store.machine)}`, folder ? '' : '.csv');
+        const state = await run({ command, machine: store.machine, ...fields.values(), output });
+        const files = [...state.result.files].sort((a, b) => /readme/i.test(b) - /readme/i.test(a));
+        outcome(
+          result,
+          state,
+          files,
+          `${files.length === 1 ? 'One file is' : `${files.length} files are`} written${folder ? ` into the folder ${output} of the project` : ''}. ` +
+            `${files.some((name) => /readme/i.test(name)) ? 'README says how the control reads the files. ' : ''}Press a name to save the file.`,
+        );
+        store.exported = true;
+        emit('uploaded');
+      }),
+    { id: 'do-export' },
+  );
+  const now = gated(write, () => (format.value ? null : 'Choose the control or the format first'));
+  format.addEventListener('change', () => {
+    fields = format.value ? optionFields(`export ${format.value}`, ['machine', 'output']) : null;
+    options.replaceChildren(...(fields?.elements ?? []));
+    error.replaceChildren();
+    result.replaceChildren();
+    now();
+  });
+  return panel(
+    'Files for a control',
+    el(
+      'p',
+      {},
+      'Writes the corrections of the machine that is chosen at the top in the format of its control. The machine has to meet the rules of ',
+      el('a', { href: '#board' }, 'Safe to run?'),
+      ', or you accept those that it does not meet.',
+    ),
+    el('div', { class: 'controls' }, format, write),
+    options,
+    error,
+    result,
+  );
+}
+
+/** A command with one output of its own: its fields, a button, what came out. */
+function commandPanel({ command, title, words, label, id, given, more = () => ({}), output, said }) {
+  const error = el('div', {}),
+    result = el('div', { id: `${id}-result` });
+  const act = button(
+    label,
+    () =>
+      guarded(error, async () => {
+        result.replaceChildren();
+        const values = fields.values();
+        const name = output(values);
+        const state = await run({ command, machine: store.machine, ...values, ...more(), output: name });
+        outcome(result, state, [name], said);
+      }),
+    { id: `do-${id}` },
+  );
+  let now = () => {};
+  const fields = optionFields(command, ['machine', 'output', ...given], () => now());
+  const lacking = () => {
+    const names = fields.required();
+    return names.length ? `State ${names.map((one) => `"${one}"`).join(', ')} first` : null;
+  };
+  now = gated(act, lacking);
+  return panel(
+    title,
+    el('p', {}, words),
+    el('div', { class: 'controls' }, fields.elements),
+    el('div', { class: 'controls' }, act),
+    error,
+    result,
+  );
+}
+
+export function exportView(root) {
+  root.append(
+    controlPanel(),
+    commandPanel({
+      command: 'correct',
+      title: 'Correct a part program or positions',
+      words:
+        'For a control without tables: writes a part program (RS-274) or a table of positions of the project (path) with the correction.',
+      label: 'Correct',
+      id: 'correct',
+      given: [],
+      output: ({ path }) => freeName(`${path.replace(/\.[^.]*$/, '')}_corrected`, path.match(/\.[^./]*$/)?.[0] ?? ''),
+      said: 'The corrected file is written. Press its name to save it.',
+    }),
+    commandPanel({
+      command: 'map',
+      title: 'Map of the error',
+      words:
+        'A report: the error over the working volume and the uncertainty of this error, without and with the correction of a machine file.',
+      label: 'Make the map',
+      id: 'map',
+      given: ['header', 'language'],
+      more: reportHead,
+      output: () => freeName(`map-${stemOf(store.machine)}`, '.html'),
+      said: 'The report is written. Press its name to open it.',
+    }),
+  );
+  return { show() {} };
+}

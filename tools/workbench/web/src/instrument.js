@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { el } from '../../../report/web/src/dom.js';
+import { freeName, run } from './api.js';
+import { option, optionFields } from './options.js';
+import { button, guarded, panel } from './parts.js';
+
+export const kDeclareBed =
+  'The machine file must declare the bed that was touched. For a new machine file: "Make one by type and travels", options of new, write bed:plane into the field "artefact".';
+
+/**
+ * Imports a file by a kind of `vernier import` that needs no table of columns: at once where it needs no further options, else its
+ * options are asked for. `done(measurement)` is called with the name of the measurement file.
+ */
+export async function importInstrument(box, kind, name, done) {
+  const command = `import ${kind}`,
+    error = el('div', {}),
+    fields = optionFields(command, ['file', 'files', 'output']);
+  const file = option(command, 'file') ? { file: name } : { files: [name] };
+  const act = () =>
+    guarded(error, async () => {
+      const output = freeName(`${name.replace(/\.[^.]*$/, '')}_read`, '.csv');
+      const { text } = await run({ command, ...file, ...fields.values(), output });
+      box.replaceChildren(
+        panel(
+          null,
+          el('p', { id: 'imported' }, `${name}: read into `, el('strong', {}, output), '.'),
+          el('pre', { class: 'source wrap' }, text.trim()),
+          kind === 'printer' ? el('p', { class: 'note' }, kDeclareBed) : null,
+          button('Read it differently', ask, { class: 'quiet', id: 'read-differently' }),
+        ),
+      );
+      await done(output);
+      return true;
+    });
+  function ask() {
+    box.replaceChildren(
+      panel(
+        `How is ${name} to be read?`,
+        error,
+        el('div', { class: 'controls' }, fields.elements),
+        el(
+          'div',
+          { class: 'controls' },
+          button('Import', act, { id: 'do-import' }),
+          button('Not now', () => box.replaceChildren(), { class: 'quiet' }),
+        ),
+      ),
+    );
+  }
+  const missing = fields.required();
+  if (missing.length) {
+    ask();
+    error.replaceChildren(el('p', { class: 'note' }, `State ${missing.map((one) => `"${one}"`).join(', ')}.`));
+    return;
+  }
+  box.replaceChildren(error);
+  if (!(await act())) ask();
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a file of the project is, and what a person can do with it.
+import { getJson } from './api.js';
+import { store } from './store.js';
+
+/** By kind: [words for the table of files, label of its button]. */
+const kKinds = {
+  machine: ['machine', 'use'],
+  measurement: ['measurement', 'use'],
+  sheet: ['spreadsheet, to be imported', 'import'],
+  instrument: ['instrument file, to be imported', 'import'],
+  trace: ['file of Ballbar Trace, to be imported', 'import'],
+  printer: ['bed of a 3D printer, to be imported', 'import'],
+  robot: ['description of a robot', 'make a machine file'],
+  program: ['part program: "Correct" under Export', null],
+  report: ['report', null],
+  image: ['image', null],
+  key: ['key', null],
+  history: ['commands of the history', null],
+  fleet: ['registry of a fleet: see Fleet', null],
+  result: ['part of a result', null],
+  workbook: ['cannot be read: save it as .xlsx', null],
+  unused: ['the workbench cannot use it', null],
+};
+
+export const kindWords = (kind) => kKinds[kind][0];
+export const kindAction = (kind) => kKinds[kind][1];
+
+const kByName = [
+  [/\.urdf$/i, 'robot'],
+  [/\.json$/i, 'trace'],
+  [/\.xlsx$/i, 'sheet'],
+  [/\.(xls|ods)$/i, 'workbook'],
+  [/\.(cfg|log)$/i, 'printer'],
+  [/\.(nc|ngc|gcode|g|tap|mpf|h|cnc)$/i, 'program'],
+  [/^history\.sh$/, 'history'],
+  [/\.db$/i, 'fleet'],
+];
+/** The contents say what these are. */
+const kAsked = /\.(csv|txt|tsv|dat|asc)$/i;
+const kBelongs = ['machine', 'report', 'image', 'key'];
+
+// Asked once for each state of a file.
+const known = new Map();
+
+/** The kind of a file of the project; where its contents have to be read for it, they are. */
+export async function kindOf(file) {
+  if (kBelongs.includes(file.kind)) return file.kind;
+  if (file.importer) return 'instrument';
+  // A command wrote what is in a folder, but for measurements.
+  const inFolder = file.name.includes('/');
+  if (inFolder && !/\.csv$/i.test(file.name)) return 'result';
+  const byName = kByName.find(([pattern]) => pattern.test(file.name));
+  if (byName) return byName[1];
+  if (!kAsked.test(file.name)) return 'unused';
+  const key = `${file.name} ${file.modified_s} ${file.bytes}`;
+  if (!known.has(key))
+    known.set(
+      key,
+      getJson('/api/kind', { name: file.name }).then(
+        (answer) => answer.kind,
+        () => 'measurement',
+      ),
+    );
+  const kind = await known.get(key);
+  if (inFolder && kind !== 'measurement') return 'result';
+  // Only a .csv is read as it is by the commands of a measurement.
+  return kind === 'measurement' && !/\.csv$/i.test(file.name) ? 'sheet' : kind;
+}
+
+/** A file was replaced: what it is has to be asked again, though its time and size may be the same. */
+export function forget(name) {
+  for (const key of [...known.keys()]) if (key.startsWith(`${name} `)) known.delete(key);
+}
+
+export const kindOfName = (name) => kindOf(store.files.find((file) => file.name === name) ?? { name, kind: 'other' });
+
+const kReads =
+  'The workbench reads spreadsheets (.xlsx, .csv, .txt), files of an instrument (.b5r, .rtl), files of a 3D printer (printer.cfg, klippy.log, heightmap.csv), machine files (.xml) and descriptions of robots (.urdf).';
+const kAdvice = {
+  workbook:
+    'is stored, but the workbench cannot read a workbook of this kind. Open the file in your spreadsheet program, save it as .xlsx or as .csv, and drop the new file.',
+  unused: `is stored, but the workbench cannot use a file of this kind. ${kReads}`,
+  program:
+    'is stored. It is a part program: under Export, "Correct" writes it with the correction of the machine, for a control without a table.',
+  fleet: 'is stored. It is a registry of a fleet: look at it under Fleet.',
+  report: 'is stored. It is a report: its name below opens it.',
+  key: 'is stored. It is a key: choose it under Compile and upload.',
+  image: 'is stored. It is an image: the workbench uses it for rows that were measured with this correction.',
+};
+/** What a dropped file is good for that is not used at once; null: it is used at once. */
+export const adviceOn = (kind) => kAdvice[kind] ?? null;
