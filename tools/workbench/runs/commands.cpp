@@ -24,7 +24,8 @@ struct Allowed {
 /// must give it though the command does not, because without it the command would ask, use a file outside of
 /// the project, or keep no result.
 constexpr Allowed kAllowed[] = {
-    {"new", false, true, "type axis tool-side work-side name urdf tip reading errors artefact output measurements"},
+    {"new", false, true,
+     "type axis tool-side work-side name urdf tip reading errors artefact output measurements"},
     {"import table", false, true,
      "file separator decimal skip table sheet unit sign column deviation leave set check-every output! "
      "save-profile"},
