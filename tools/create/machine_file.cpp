@@ -337,7 +337,8 @@ std::string machine_file(const MachinePlan& plan) {
   text += axes_text(plan);
   if (!robot) text += tables_text(plan);
   for (const PlannedArtefact& one : plan.artefacts)
-    text += fmt::format("    <artefact name=\"{}\" type=\"{}\"/>\n", text::escape_attribute(one.name), one.type);
+    text +=
+        fmt::format("    <artefact name=\"{}\" type=\"{}\"/>\n", text::escape_attribute(one.name), one.type);
   text += "  </variables>\n";
   text += robot ? arm_rows(plan) : branch(plan, true) + branch(plan, false);
   return text + "</machine>\n";

@@ -218,8 +218,9 @@ PlannedAxis parse_planned_axis(const std::string& words) {
 PlannedArtefact parse_planned_artefact(const std::string& words) {
   const auto colon = words.rfind(':');
   if (colon == std::string::npos || colon == 0 || !model::artefact_type_named(words.substr(colon + 1)))
-    throw text::InputError("--artefact " + words +
-                           ": NAME:TYPE with the type point, line, plane, sphere or cylinder, such as bed:plane");
+    throw text::InputError(
+        "--artefact " + words +
+        ": NAME:TYPE with the type point, line, plane, sphere or cylinder, such as bed:plane");
   return {words.substr(0, colon), words.substr(colon + 1)};
 }
 

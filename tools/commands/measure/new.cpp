@@ -200,9 +200,10 @@ void register_new(CLI::App& vernier) {
           "quantities that the survey reads: " + format::survey_words("or") + " (" + reading_help() + ")")
       ->capture_default_str();
   command
-      ->add_option("--artefact", arguments->artefacts,
-                   "NAME:TYPE: an object that the tool point touches (column on), of type point, line, plane, "
-                   "sphere or cylinder: bed:plane for the bed of a 3D printer; repeat for each object")
+      ->add_option(
+          "--artefact", arguments->artefacts,
+          "NAME:TYPE: an object that the tool point touches (column on), of type point, line, plane, "
+          "sphere or cylinder: bed:plane for the bed of a 3D printer; repeat for each object")
       ->allow_extra_args(false);
   command->add_option("--tool", arguments->tool,
                       "tool point in the frame of the last axis that carries the tool, mm: 0,0,-120");
