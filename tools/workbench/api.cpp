@@ -107,7 +107,7 @@ ApiReply Api::delete_file(const ApiRequest& request) {
   return json_reply({{"name", name}});
 }
 
-/// The lines around an error: {"first", "lines": [...]}.
+/// The lines around an error: {"first", "lines": [...]}; no lines of a file that is no text (a workbook).
 ApiReply Api::lines(const ApiRequest& request) {
   constexpr std::size_t kAround = 2, kLongest = 400;
   const std::string text = text::read_file(project_.existing(request.word("name")).string());
@@ -115,7 +115,8 @@ ApiReply Api::lines(const ApiRequest& request) {
   const std::size_t first = wanted > kAround ? wanted - kAround : 1;
   Json list = Json::array();
   std::size_t number = 1, at = 0;
-  while (at < text.size() && number <= wanted + kAround) {
+  const bool is_text = text.find('\0') == std::string::npos;
+  while (is_text && at < text.size() && number <= wanted + kAround) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     if (number >= first) list.push_back(text.substr(at, std::min(end - at, kLongest)));
     at = end + 1;

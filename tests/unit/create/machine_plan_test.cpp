@@ -154,5 +154,17 @@ TEST(MachinePlan, StationsAreRoundAndFew) {
   }
 }
 
+TEST(MachinePlan, DeclaresWhatTheToolTouches) {
+  MachinePlan made = plan("gantry", {"X:0:235", "Y:0:235", "Z:0:250"});
+  made.artefacts = {parse_planned_artefact("bed:plane"), parse_planned_artefact("a<b:sphere")};
+  const Machine machine = parse_machine(machine_file(made), "m.xml");
+  ASSERT_EQ(machine.artefacts.size(), 2u);
+  EXPECT_EQ(machine.artefacts[0].name, "bed");
+  EXPECT_EQ(machine.artefacts[0].type, ArtefactType::kPlane);
+  EXPECT_EQ(machine.artefacts[1].name, "a<b");
+  for (const char* words : {"bed", "bed:", ":plane", "bed:table", ""})
+    EXPECT_NE(refusal([&] { parse_planned_artefact(words); }).find("NAME:TYPE"), std::string::npos) << words;
+}
+
 }  // namespace
 }  // namespace vernier::machine_plan_test

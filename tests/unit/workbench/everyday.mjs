@@ -7,7 +7,6 @@ import { join } from 'node:path';
 import assert from 'node:assert/strict';
 import { bin, data, folder, journey, picture, source, text, top, vernier, view } from './rig.mjs';
 
-const bytes = (name) => readFileSync(join(source, 'tests/data', name));
 const quiet = (...words) => execFileSync(vernier, words, { cwd: top, stdio: 'ignore' });
 const made = (name) => ({ name, bytes: readFileSync(join(top, name)) });
 const command = (page) => text(page, '#command');
@@ -190,7 +189,7 @@ async function printer(page) {
   await measured(page, 'printer_read.csv');
   await words(page, '#import-box', '25 touches of the artefact "bed"');
   assert.equal(
-    await page.evaluate("document.querySelector('#history code').textContent"),
+    await page.evaluate("document.querySelector('#history li:last-child code').textContent"),
     'vernier import printer printer.cfg -o printer_read.csv',
   );
   assert.equal(await page.evaluate('document.querySelector(\'[data-file="printer.cfg"]\').dataset.kind'), 'printer');
@@ -297,7 +296,12 @@ async function again(page) {
   await page.drop([{ name: 'broken.xlsx', text: 'PK\u0003\u0004\u0000\u0000no workbook' }]);
   await words(page, '#import-box', 'broken.xlsx');
   assert.equal(await page.evaluate("document.querySelectorAll('#import-box .source, #drop-error .source').length"), 0);
+  // What is not understood is told in the words of the page.
+  await page.drop([{ name: 'gauge.csv', text: 'Pos;Anzeige\n0,0;1,5\n100,0;2,5\n200,0;4,0\n' }]);
+  await words(page, '#sheet-message', '"Pos" is X[mm]');
+  assert.ok(!(await text(page, '#sheet-message')).includes('--'), await text(page, '#sheet-message'));
   // What cannot be pressed says why.
+  assert.ok((await title(page, '#do-import')).startsWith('State what is missing first'));
   await view(page, 'compare');
   for (const selector of ['#handover-compare', '#handover-diagnose', '#handover-positioning'])
     assert.equal(await title(page, selector), 'Choose a machine and measurements at the top first', selector);

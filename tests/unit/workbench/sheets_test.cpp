@@ -41,6 +41,12 @@ TEST(Sheets, AMeasurementFileIsToldFromASpreadsheetByItsFirstLine) {
   EXPECT_FALSE(begins_as_measurement(""));
 }
 
+TEST_F(Desk, AWorkbookHasNoLinesToShow) {
+  write_file(folder.in("w.xlsx"), std::string("PK\x03\x04\0\0\n\0b", 9));
+  EXPECT_TRUE(get("/api/lines", {{"name", "w.xlsx"}, {"line", "1"}})["lines"].empty());
+  EXPECT_EQ(get("/api/lines", {{"name", "rows.csv"}, {"line", "1"}})["lines"].size(), 3u);
+}
+
 TEST_F(Desk, FilesOfAPrinterAreKnownByTheirContents) {
   write_file(folder.in("printer.cfg"),
              "[printer]\nkinematics: corexy\n#*# [bed_mesh default]\n#*# points =\n");

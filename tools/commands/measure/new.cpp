@@ -121,6 +121,10 @@ create::MachinePlan plan_of(const NewArguments& arguments, const CLI::App& comma
   plan.positioning_only = arguments.errors == "positioning";
   for (const std::string& words : arguments.artefacts)
     plan.artefacts.push_back(create::parse_planned_artefact(words));
+  // Readings of the column `on` need an object: a plane such as the bed of a printer, if none is stated.
+  if (plan.artefacts.empty() &&
+      create::reading_of(arguments.reading).list().front() == format::ReadingForm::kOn)
+    plan.artefacts.push_back({"bed", "plane"});
   if (plan.positioning_only && !plan.arm.empty())
     throw text::InputError(
         "--errors positioning is only for machines with linear axes; a robot always has all errors of its "
@@ -136,20 +140,9 @@ std::string reading_help() {
   return text::joined(list, "; ");
 }
 
-/// Adds the object that the probe touches, for the column `on`: a plane such as the bed of a printer.
-std::string with_artefact(std::string text) {
-  const std::string end = "</variables>";
-  const std::size_t at = text.find(end);
-  if (at == std::string::npos) throw std::logic_error("a machine file without variables");
-  return text.insert(at,
-                     "  <!-- The object that the probe touches, named in the column on: type plane, sphere, "
-                     "cylinder, line or point. -->\n    <artefact name=\"bed\" type=\"plane\"/>\n  ");
-}
-
 void run_new(const NewArguments& arguments, const CLI::App& command) {
   const create::MachinePlan plan = plan_of(arguments, command);
-  const bool touches = create::reading_of(arguments.reading).list().front() == format::ReadingForm::kOn;
-  const std::string text = touches ? with_artefact(create::machine_file(plan)) : create::machine_file(plan);
+  const std::string text = create::machine_file(plan);
   const model::Machine machine = model::parse_machine(text, arguments.output);
   if (!arguments.measurements.empty()) text::require_place(arguments.measurements);
   const std::string survey = create::survey_template(machine, create::reading_of(arguments.reading));

@@ -27,8 +27,8 @@ constexpr Allowed kAllowed[] = {
     {"new", false, true,
      "type axis tool-side work-side name urdf tip reading errors artefact output measurements"},
     {"import table", false, true,
-     "file separator decimal skip table sheet unit sign column deviation leave set check-every output! "
-     "save-profile"},
+     "file separator decimal skip table sheet unit sign column deviation leave set fill one-motion "
+     "check-every output! save-profile"},
     {"import ballbar", false, true, "files repair-time-base output"},
     {"import ballbar-trace", false, true, "files radius plane length feed output"},
     {"import tracker", false, true, "file map separator decimal skip header column set check-every output"},

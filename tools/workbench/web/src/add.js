@@ -3,7 +3,7 @@ import { choice, el, table, tiles } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, getJson, postBlob, postJson, refresh, run } from './api.js';
 import { fallingFigure } from './charts.js';
-import { button, guarded, needsSubject, panel } from './parts.js';
+import { button, gate, guarded, needsSubject, panel } from './parts.js';
 import { moreOptions } from './options.js';
 import { parameterPanel } from './parameters.js';
 import { redrawAll } from './plot.js';
@@ -64,7 +64,7 @@ function stepsPanel() {
     { class: 'quiet', id: 'undo-step' },
   );
   const draw = () => {
-    undo.disabled = steps.length < 2;
+    gate(undo, steps.length < 2 ? 'There is no step to take back' : null);
     const last = steps.at(-1);
     const um = (label, value) => ({ label, value: number(value, 4), unit: 'µm', strong: true });
     const figures = last

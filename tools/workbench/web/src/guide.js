@@ -5,6 +5,14 @@ import { on, store } from './store.js';
 
 const um = (value) => `${number(value, 3)} µm`;
 
+function askWhatIsMissing() {
+  if (!store.compare) return 'Ask what is missing.';
+  const { rms_um, noise_um } = store.compare;
+  return rms_um > noise_um
+    ? `The residual of the model is ${um(rms_um)}, the noise ${um(noise_um)}: ask what is missing.`
+    : `The residual of the model (${um(rms_um)}) is not larger than the noise (${um(noise_um)}): ask whether anything is missing.`;
+}
+
 /** What to do after the diagnosis: to add what it named, or only to fit. */
 function afterDiagnosis() {
   const named = store.diagnosis?.candidates.some((one) => one.accepted) ?? true;
@@ -29,10 +37,7 @@ const kPath = [
     'What is missing',
     'diagnose',
     () => store.diagnosis !== null || store.diagnosed.has(store.measurements.join('|')),
-    () =>
-      store.compare
-        ? `The model leaves ${um(store.compare.rms_um)} beside ${um(store.compare.noise_um)} of noise: ask what is missing.`
-        : 'Ask what is missing.',
+    askWhatIsMissing,
   ],
   ['fall', 'Watch it fall', 'add', () => store.steps.length > 0, afterDiagnosis],
   [

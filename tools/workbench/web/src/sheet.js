@@ -2,7 +2,7 @@
 import { choice, el } from '../../../report/web/src/dom.js';
 import { freeName, postJson, run } from './api.js';
 import { optionFields } from './options.js';
-import { button, guarded, panel } from './parts.js';
+import { button, gate, guarded, pageWords, panel } from './parts.js';
 import { store } from './store.js';
 
 /** Columns that only the import of a tracker or of a probe understands. */
@@ -26,6 +26,17 @@ const withUnit = (one) => `${one.name}${one.unit ? `[${one.unit}]` : ''}`;
 /** What the table of columns and the preview say; all other options of the import have fields. */
 const kInTable = ['file', 'output', 'column', 'deviation', 'leave', 'sheet'];
 const kOfPreview = [...kInTable, 'separator', 'decimal', 'skip', 'header'];
+
+/** What the program says of a spreadsheet, in the words of the table of columns. */
+function onPage(message) {
+  if (/\bvernier [a-z]/.test(message)) return message;
+  const words = message
+    .replace(/; --preview shows.*$/, '')
+    .replace(/--column "([^"=]+)=([^"]+)"/g, '"$2" is $1')
+    .replace(/--deviation "([^"=]+)=([^"]+)"/g, '"$2" is a deviation of $1')
+    .replace(/--leave\b/g, '"left out"');
+  return pageWords(words, 'vernier import table');
+}
 
 /** The options of an import without the preview's help: a tracker's and a probe's table. */
 const ofPreview = (preview) => ({
@@ -98,7 +109,11 @@ export async function importSheet(box, name, done) {
     return Object.fromEntries(Object.entries(lists).filter(([, list]) => list.length));
   };
   const ofSheet = () => (sheet ? { sheet } : {});
-  const ask = () => postJson('/api/sheet', { name, machine: store.machine, ...ofSheet(), ...forms.table.values(), ...columns() });
+  const ask = () =>
+    postJson('/api/sheet', { name, machine: store.machine, ...ofSheet(), ...forms.table.values(), ...columns() }).catch((why) => {
+      why.message = onPage(why.message);
+      throw why;
+    });
   const doImport = (preview) =>
     guarded(error, async () => {
       const output = freeName(`${name.replace(/\.[^.]*$/, '')}_read`, '.csv');
@@ -146,12 +161,12 @@ export async function importSheet(box, name, done) {
     read = now;
     kind ??= likely(now);
     const go = button('Import', () => doImport(now), { id: 'do-import' });
-    go.disabled = kind === 'table' && now.message !== null;
+    gate(go, kind === 'table' && now.message !== null ? 'State what is missing first: the message above names it' : null);
     box.replaceChildren(
       panel(
         `What is in ${name}?`,
         el('p', { id: 'how-read' }, now.how),
-        now.message && kind === 'table' ? el('p', { class: 'error', role: 'alert', id: 'sheet-message' }, now.message) : null,
+        now.message && kind === 'table' ? el('p', { class: 'error', role: 'alert', id: 'sheet-message' }, onPage(now.message)) : null,
         el(
           'div',
           { class: 'controls' },

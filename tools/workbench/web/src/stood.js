@@ -27,7 +27,8 @@ export function stoodPanel(choose) {
     const { file, columns } = asked(store.refusal);
     if (!store.refusal) return room.replaceChildren();
     const words = el('p', { class: 'error', role: 'alert' }, store.refusal);
-    if (!columns.length || !file) return room.replaceChildren(
+    if (!columns.length || !file)
+      return room.replaceChildren(
         panel('These rows cannot be read', words, /no measured column .*\bon\b/.test(store.refusal) ? el('p', {}, kMaybeTouched) : null),
       );
     const fields = columns.map((column) => [column, number(`stood-${column.replace(/\W.*/, '')}`, `${column} stood at`, '8')]);
