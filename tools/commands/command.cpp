@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "tools/commands/command.h"
+#include "tools/safety/safety_sheet.h"
 #include "tools/text/error.h"
 
 namespace vernier::commands {
@@ -112,6 +113,10 @@ void Progress::update(double fraction, const std::string& step) {
   std::fprintf(stderr, terminal ? "\r\033[K%s: %3.0f %% %s" : "%s: %3.0f %% %s\n", what_.c_str(),
                100 * fraction, step.c_str());
   std::fflush(stderr);
+}
+
+CLI::Validator rule_words() {
+  return {[](std::string&) { return std::string(); }, "{" + safety::rule_names(",") + "}"};
 }
 
 }  // namespace vernier::commands

@@ -141,6 +141,10 @@ void write_json(const std::string& path, const nlohmann::ordered_json& result);
 inline constexpr const char *kReads = "FILE", *kReadsFolder = "FOLDER", *kReadsOrServer = "FILE:or server",
                             *kWrites = "FILE:written", *kWritesFolder = "FOLDER:written";
 
+/// Names the rules of the safety sheet in the help of `--accept` and on the page of the workbench. The
+/// validator accepts any word: safety::rules_named refuses a wrong one and lists the rules.
+CLI::Validator rule_words();
+
 /// Help text of the option `--residuals`.
 inline constexpr const char* kResidualsHelp =
     "every reading as CSV: row, observation, value, prediction, residual, u (mm or deg)";

@@ -195,9 +195,9 @@ TEST(WorkbenchCommand, EveryAllowedOptionThatNamesAFileIsConfined) {
         continue;
       }
       // These only tell of a file: the place of a circle in the files' order, a line of a report's head and
-      // its language, a tool of the machine file.
+      // its language, free parameters beside those of the machine file, a tool of the machine file.
       if (option["name"] == "plane" || option["name"] == "header" || option["name"] == "language" ||
-          (command["name"] == "correct" && option["name"] == "tool"))
+          option["name"] == "free" || (command["name"] == "correct" && option["name"] == "tool"))
         continue;
       for (const char* word :
            {"file", "folder", "directory", "(CSV", "(XML", "(HTML", ".csv", ".xml", "report"})

@@ -311,6 +311,28 @@ async function again(page) {
   assert.ok((await title(page, '#fleet-look')).startsWith('State the registry first'));
 }
 
+/** The description of a robot becomes a machine file, and a description with its joints comes out. */
+async function robot(page) {
+  const joint = (k, parent, child, axis) =>
+    `<joint name="q${k}" type="revolute"><parent link="${parent}"/><child link="${child}"/><origin xyz="0 0 0.4" rpy="0 0 0"/><axis xyz="${axis}"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>`;
+  const axes = ['0 0 1', '0 1 0', '0 1 0', '0 0 1', '0 1 0', '0 0 1'];
+  const links = axes.map((_, k) => `<link name="l${k + 1}"/>`).join('');
+  await page.drop([
+    {
+      name: 'arm.urdf',
+      text: `<robot name="arm"><link name="l0"/>${links}${axes.map((one, k) => joint(k + 1, `l${k}`, `l${k + 1}`, one)).join('')}</robot>`,
+    },
+  ]);
+  await chosen(page, 'arm.xml');
+  assert.equal(await page.evaluate('document.querySelector(\'[data-file="arm.urdf"]\').dataset.kind'), 'robot');
+  await view(page, 'export');
+  await page.choose('#export-format', 'urdf');
+  await page.click('#do-export');
+  await words(page, '#export-result', 'difference from the machine file at 1000 poses');
+  assert.deepEqual(await files(page, 'export-result'), [['urdf-arm/robot.urdf', 'robot.urdf']]);
+  assert.ok(readFileSync(join(folder, 'urdf-arm/robot.urdf'), 'utf8').includes('q6'));
+}
+
 /** A small screen with a long formula, and paper: nothing is wider than the page, no number is divided. */
 async function looks(page) {
   const sum = Array.from({ length: 40 }, (_, i) => `+k*X*${i + 1}`).join('');
@@ -352,4 +374,4 @@ async function looks(page) {
 }
 
 assert.ok(bin && data);
-await journey({ shop, printer, again, looks }, { shop: /422/, printer: /422/, again: /422/ });
+await journey({ shop, printer, robot, again, looks }, { shop: /422/, printer: /422/, again: /422/ });

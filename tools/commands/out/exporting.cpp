@@ -123,7 +123,7 @@ CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const
       ->add_option("--accept", arguments->accept,
                    "name of a rule of the safety sheet (\"safe to run?\", tools/docs/safety.md) that you "
                    "override; may be repeated")
-      ->type_name("{" + safety::rule_names(",") + "}");
+      ->check(rule_words());
   command->add_option("--json", arguments->json,
                       "file for the result as JSON, for programs; - for standard output");
   return command;

@@ -224,7 +224,7 @@ void register_compile(CLI::App& vernier) {
       ->add_option("--accept", arguments->accept,
                    "name of a rule of the safety sheet (\"safe to run?\", tools/docs/safety.md) that you "
                    "override; the image records the name; may be repeated")
-      ->type_name("{" + safety::rule_names(",") + "}");
+      ->check(rule_words());
   command->footer(
       "The safety sheet tests the correction over <volume> (else over the axis ranges), with the <tools> of "
       "the machine file.\n"

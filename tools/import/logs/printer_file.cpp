@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "tools/format/columns.h"
+#include "tools/sheet/encoding.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -530,7 +531,8 @@ ImportTable table_of(const std::string& file, const std::vector<Touch>& touches,
 
 }  // namespace
 
-bool is_printer_file(const std::string& text) {
+bool is_printer_file(const std::string& bytes) {
+  const std::string text = sheet::utf8_text(bytes);
   const auto has = [&](const std::string& mark) { return text.find(mark) != std::string::npos; };
   return text.starts_with(kHeightMap) || has('[' + std::string(kMesh)) || has("probe at ") ||
          has("probe: at ") || has("Bed X:");

@@ -32,9 +32,9 @@ struct PrinterFile {
                                          // temperatures
 };
 
-/// True if the text is a file of a printer by its first line or its marks: a height map, a saved mesh, or a
-/// log with touches. `read_printer_file` may still refuse it.
-bool is_printer_file(const std::string& text);
+/// True if the bytes are a file of a printer by its first line or its marks: a height map, a saved mesh, or a
+/// log with touches. `read_printer_file` may still refuse the file.
+bool is_printer_file(const std::string& bytes);
 
 /// Reads the touches on a printer's bed as positions of the axes, from one of these files:
 /// - a configuration of Klipper with a saved mesh (section [bed_mesh NAME]),

@@ -9,7 +9,6 @@
 #include "tools/model/machine_reader.h"
 #include "tools/results/safety_json.h"
 #include "tools/safety/safety_sheet.h"
-#include "tools/sheet/encoding.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/workbench/files/excluded.h"
@@ -69,7 +68,7 @@ ApiReply FileDesk::kind(const ApiRequest& request) {
   const char* kind = "sheet";
   if (begins_as_measurement(text))
     kind = "measurement";
-  else if (importer::is_printer_file(sheet::utf8_text(text)))
+  else if (importer::is_printer_file(text))
     kind = "printer";
   return json_reply({{"kind", kind}});
 }

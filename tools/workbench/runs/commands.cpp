@@ -36,7 +36,7 @@ constexpr Allowed kAllowed[] = {
      "file map separator decimal skip header column set check-every radius output"},
     {"import laser", false, true, "file output"},
     {"import printer", false, true, "file profile on offset series u output"},
-    {"fit", false, true, "machine meas images loss output!"},
+    {"fit", false, true, "machine meas images loss free hold output!"},
     {"compare", false, false, "machine meas! datum images header language output"},
     {"diagnose", false, false, "machine meas images most machine-out header language output"},
     {"evaluate iso230-2", false, false, "meas axis tolerance uncertainty header language output"},
