@@ -210,7 +210,8 @@ TEST(EvaluateCommand, WritesNumbersReportAndVerdict) {
        "' && " VERNIER_BIN_DIR "/vernier evaluate iso230-2 one.csv --axis X --tolerance A=50um >out.txt 2>&1")
           .c_str());
   EXPECT_EQ(WEXITSTATUS(status), 2);
-  EXPECT_NE(read_file(folder + "/out.txt").find("A cannot be compared with its tolerance"), std::string::npos);
+  EXPECT_NE(read_file(folder + "/out.txt").find("A cannot be compared with its tolerance"),
+            std::string::npos);
   fs::remove_all(folder);
 }
 
