@@ -5,8 +5,6 @@ import { button, gate, guarded, panel } from './parts.js';
 import { kDeclareBed } from './instrument.js';
 import { on, store } from './store.js';
 
-const kMaybeTouched = kDeclareBed;
-
 /** Columns that the refusal of rows asks for: [name[unit]]; the file that lacks them. */
 function asked(refusal) {
   const file = refusal?.match(/^(.+?):\d+: /)?.[1];
@@ -29,7 +27,7 @@ export function stoodPanel(choose) {
     const words = el('p', { class: 'error', role: 'alert' }, store.refusal);
     if (!columns.length || !file)
       return room.replaceChildren(
-        panel('These rows cannot be read', words, /the machine file has no <artefact>/.test(store.refusal) ? el('p', {}, kMaybeTouched) : null),
+        panel('These rows cannot be read', words, /the machine file has no <artefact>/.test(store.refusal) ? el('p', {}, kDeclareBed) : null),
       );
     const fields = columns.map((column) => [column, number(`stood-${column.replace(/\W.*/, '')}`, `${column} stood at`, '8')]);
     const u = number('stood-u', 'standard uncertainty of the readings, um', '5');
