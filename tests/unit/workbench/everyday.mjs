@@ -223,6 +223,10 @@ async function printer(page) {
       text: 'RepRapFirmware height map file v2 generated at 2026-01-01 10:00, min error -0.010, max error 0.030, mean 0.010, deviation 0.010\naxis0,axis1,min0,max0,min1,max1,radius,spacing0,spacing1,num0,num1\nX,Y,20.00,180.00,20.00,180.00,-1.00,80.00,80.00,3,3\n0.010,0.020,0.030\n-0.010,0.000,0.010\n0.000,0.010,0.020\n',
     },
   ]);
+  // A height map does not state the offset of its probe: the page asks for it.
+  await words(page, '#import-box .error', 'the offset of the probe from the nozzle');
+  await page.type('#import-box [data-option=offset]', '0; 0');
+  await page.click('#do-import');
   await measured(page, 'heightmap_read.csv');
   await page.choose('#measurement', 'printer_read.csv');
   await view(page, 'add');
