@@ -92,7 +92,7 @@ TEST(MachineLint, OddMeaningsAreWarnings) {
   }
   some_line_has(lines, "\"big\": 80 mm off its nominal -- µm written as mm?");
   some_line_has(lines, "\"arc\": no transform uses this static");
-  some_line_has(lines, "\"X\": maxcorrection of 125 mm -- µm?");
+  some_line_has(lines, "\"X\": maxcorrection of 125 mm -- is the value in µm?");
   some_line_has(lines, "\"A\": turns by 3.14 deg only -- radians?");
   some_line_has(lines, "\"Celsius\": unknown unit");
   some_line_has(lines, "\"T\": no transform uses this input");

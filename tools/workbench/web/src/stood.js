@@ -27,7 +27,11 @@ export function stoodPanel(choose) {
     const words = el('p', { class: 'error', role: 'alert' }, store.refusal);
     if (!columns.length || !file)
       return room.replaceChildren(
-        panel('These rows cannot be read', words, /the machine file has no <artefact>/.test(store.refusal) ? el('p', {}, kDeclareBed) : null),
+        panel(
+          'These rows cannot be read',
+          words,
+          /the machine file has no <artefact>/.test(store.refusal) ? el('p', {}, kDeclareBed) : null,
+        ),
       );
     const fields = columns.map((column) => [column, number(`stood-${column.replace(/\W.*/, '')}`, `${column} stood at`, '8')]);
     const u = number('stood-u', 'standard uncertainty of the readings, um', '5');
