@@ -61,7 +61,8 @@ def of_messages(text):
         words = match.group(1)
         if words.lstrip().startswith(("<", "SELECT", "INSERT")):
             continue
-        if len(words.split()) >= LEAST_WORDS and re.search("[a-z] [a-z]", words):
+        own_words = re.sub(r"\{[^}]*\}|%\S+|\\n", " ", words)
+        if len(re.findall(r"[A-Za-z]{2,}", own_words)) >= LEAST_WORDS and re.search("[a-z] [a-z]", words):
             found.append(words)
     return found
 
