@@ -263,7 +263,7 @@ const char* describe(ImageFault fault) noexcept {
     case ImageFault::kProgramTable:
       return "program: the stations, reciprocals or grid of a table are inconsistent";
     case ImageFault::kProgramWrap:
-      return "program: the period of an axis is inconsistent";
+      return "program: the period of a rotary axis does not agree with its reciprocal or its range";
     case ImageFault::kProgramOpCode:
       return "program: an operation is unknown";
     case ImageFault::kProgramOperand:

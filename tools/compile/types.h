@@ -127,7 +127,7 @@ struct Derivation {
                                        // valid away from these steps
 };
 
-/// Source of an error in the fixed-point program.
+/// Cause of a difference between the fixed-point program and exact arithmetic.
 enum class ErrorSource : std::uint8_t { kRounding, kTable, kFunction, kChannel, kLag };
 constexpr std::size_t kErrorSourceCount = 5;  // number of error sources
 

@@ -183,7 +183,7 @@ std::string ImageTrial::settle() {
           "the trial of the board lasts only {:.0f} s more, which is shorter than the time --watch",
           std::max(0.0, left_s(look.slots)));
     }
-    if (is_over(end)) return fmt::format("not in effect within {:.4g} s: {}", options_.settle_s, why);
+    if (is_over(end)) return fmt::format("the board did not use the image within {:.4g} s: {}", options_.settle_s, why);
     breathe();
   }
 }

@@ -90,7 +90,7 @@ bool has_confirmed(const SlotsReply& slots) {
 std::string confirmed_text(const SlotsReply& slots) {
   return has_confirmed(slots)
              ? fmt::format("{:016x} is confirmed{}", slots.confirmed_fingerprint, whence(slots))
-             : "the board has no confirmed image";
+             : "no image of the board was confirmed after a trial";
 }
 
 nlohmann::ordered_json confirmed_json(const SlotsReply& slots) {

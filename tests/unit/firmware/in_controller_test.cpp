@@ -77,7 +77,7 @@ TEST_F(InController, AnswersAgreeOnAGivenImage) {
   EXPECT_EQ(confirmed_json(slots), live_json({}, {}, {}, slots, {}, state)["running"]);
   SlotsReply none{};
   none.confirmed = none.trial = kNoSlot;
-  EXPECT_EQ(confirmed_text(none), "the board has no confirmed image");
+  EXPECT_EQ(confirmed_text(none), "no image of the board was confirmed after a trial");
   EXPECT_EQ(confirmed_json(none), nullptr);
   none.confirmed = 1, none.confirmed_fingerprint = 0xab;
   EXPECT_EQ(confirmed_text(none), "00000000000000ab is confirmed");

@@ -131,8 +131,8 @@ void print_displacements(std::FILE* out, const Json& displacement) {
                displacement["unit"].get<std::string>(), signal["rows_without"].get<std::size_t>());
   if (displacement.contains("agreement"))
     fmt::print(out,
-               "found by agreement with the rows: the rms of the difference is {:.4g} um, of the measured "
-               "displacement {:.4g} um\n",
+               "The cut-off gives the best agreement with the measured displacement: rms of the difference "
+               "{:.4g} um, rms of the measured displacement {:.4g} um\n",
                displacement["agreement"]["rms_um"].get<double>(),
                displacement["agreement"]["measured_rms_um"].get<double>());
 }

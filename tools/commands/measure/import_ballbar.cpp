@@ -223,9 +223,9 @@ std::vector<importer::TraceCircle> circles_of(const BallbarArguments& arguments)
 void add_ballbar_kind(CLI::App& kind) {
   kind.footer(
       "Samples between START and END of the file are fit rows; the overshoot arcs before START and after END "
-      "are check rows. With --repair-time-base the samples of the first whole turn that repeats are fit "
-      "rows, and the other samples are check rows; samples of the feed-in that do not repeat have no "
-      "length.");
+      "are check rows. With --repair-time-base the fit rows are the first whole turn on the circle; "
+      "the other samples are check rows. Samples of the feed-in that no later pass repeats "
+      "have no length.");
   const auto arguments = add_common(kind);
   kind.add_flag("--repair-time-base", arguments->repair,
                 "Estimate the samples per turn and the missing samples from the record itself, and compute "
