@@ -14,8 +14,8 @@ class CounterAxis;
 class ModbusAxes;
 
 /// Opens the counter for the position of an axis of kind "counter". `clock`: must exist longer than the
-/// result. Returns null with `error` set if the counter is missing, or has too few bits for the speed of the
-/// axis. Throws BoardError if a setting is wrong. Not real-time safe.
+/// result. Returns null, and the reason in `error`, if the counter is missing, or has too few bits for the
+/// speed of the axis. Throws BoardError if a setting is wrong. Not real-time safe.
 std::unique_ptr<CounterAxis> open_counter_axis(const PositionAxis& axis, const AxisLimits& limits,
                                                TimeUs tick, Clock& clock, std::string& error);
 

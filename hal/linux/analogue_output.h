@@ -15,8 +15,8 @@ class AnalogueOutput : public OutputDevice {
  public:
   /// `channel`: directory of an exported channel of the PWM class (/sys/class/pwm/pwmchip0/pwm0); `scale`: in
   /// ns of on-time; `period_ns`: >= scale.high. If the channel is off or has another period, it is set to the
-  /// zero of its scale and switched on. Returns null with `error` set if the channel cannot be set up. Not
-  /// real-time safe.
+  /// zero of its scale and switched on. Returns null, and the reason in `error`, if the channel cannot be set
+  /// up. Not real-time safe.
   static std::unique_ptr<AnalogueOutput> pwm(const std::string& channel, std::int64_t period_ns,
                                              const AnalogueScale& scale, std::string& error);
   /// `device`: directory of an IIO device; `channel`: the number N in out_voltageN_raw; `scale`: in codes.

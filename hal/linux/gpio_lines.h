@@ -22,8 +22,8 @@ class GpioLine {
  public:
   enum class Use { kInput, kOutput, kEdges };
 
-  /// Requests a line from the kernel. An output is off at first. Returns null with `error` set if the chip or
-  /// line does not exist, or if the line is in use. Not real-time safe.
+  /// Requests a line from the kernel. An output is off at first. Returns null, and the reason in `error`, if
+  /// the chip or line does not exist, or if the line is in use. Not real-time safe.
   static std::unique_ptr<GpioLine> request(const GpioAddress& address, Use use, std::string& error);
   virtual ~GpioLine() = default;
 

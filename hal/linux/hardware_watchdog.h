@@ -10,7 +10,7 @@ namespace vernier {
 class HardwareWatchdog {
  public:
   /// Starts the watchdog immediately. The time of the watchdog is set to `seconds` if the driver supports
-  /// this. Returns null with `error` set if the watchdog cannot be opened. Not real-time safe.
+  /// this. Returns null, and the reason in `error`, if the watchdog cannot be opened. Not real-time safe.
   static std::unique_ptr<HardwareWatchdog> open(const std::string& device, int seconds, std::string& error);
   /// If disarm() was not called before the destructor, the watchdog resets the computer when its time is
   /// over.

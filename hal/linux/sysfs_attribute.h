@@ -15,8 +15,8 @@ class SysfsAttribute {
  public:
   enum class Use { kRead, kWrite, kBoth };
 
-  /// Returns nullopt with `error` set ("/sys/...: No such file or directory") if the attribute cannot be
-  /// opened. Not real-time safe.
+  /// Returns nullopt and the reason in `error` ("/sys/...: No such file or directory") if the attribute
+  /// cannot be opened. Not real-time safe.
   static std::optional<SysfsAttribute> open(const std::string& path, Use use, std::string& error);
   SysfsAttribute(SysfsAttribute&& other) noexcept;
   SysfsAttribute& operator=(SysfsAttribute&& other) noexcept;

@@ -121,7 +121,7 @@ struct Effect {
 };
 
 /// Parses effects from a text in the format of tools/docs/effects.md. `file`: name of the file in messages.
-/// If the text is not valid, throws InputError with file, line and word.
+/// If the text is not a catalogue of effects, throws InputError with file, line and word.
 std::vector<Effect> parse_effects(const std::string& text, const std::string& file);
 
 /// Returns the catalogue of effects that is part of the program.

@@ -24,7 +24,8 @@ struct PositioningBudget {
 };
 
 /// Adds a component from a text "device=0.8" (also misalignment, thermometer, expansion, expansion-range,
-/// away, drift), in the units of PositioningBudget. Throws InputError if the text is not valid.
+/// away, drift), in the units of PositioningBudget. Throws InputError if the text is not a component
+/// with its value.
 void add_to_budget(PositioningBudget& budget, const std::string& words);
 
 struct BudgetPart {

@@ -9,7 +9,7 @@
 namespace vernier::fleet {
 
 /// Reads the JSON result of `vernier check`, which does not contain the machine and the time. Throws
-/// InputError if the JSON is not such a result.
+/// InputError if the JSON is not a result of `vernier check`.
 registry::FleetCheck parse_check(const std::string& json, const std::string& file);
 
 /// Returns the results of one check of a machine, one result for each tested parameter. A result is the

@@ -39,7 +39,7 @@ RolloutEnd roll_out(registry::Registry& registry, std::vector<RolloutMachine> ma
                     const std::function<void(const RolloutMachine&)>& kept);
 
 /// Converts the stages "1,10%,100%" to the number (from 1) of the last machine in each stage. Throws
-/// InputError if the text is not valid.
+/// InputError if the text is not a list of stages.
 std::vector<std::size_t> stage_ends(const std::string& stages, std::size_t machines);
 
 }  // namespace vernier::fleet

@@ -36,8 +36,8 @@ class CanAxes : public PositionReader {
                                                       // accepted
 
   /// `interface`: for example "can0"; `ids`: identifiers of 11 bits, or of 29 bits if above 0x7ff. At least
-  /// one identifier is necessary, and all must be different. Returns null with `error` set if the kernel
-  /// refuses the socket. Not real-time safe.
+  /// one identifier is necessary, and all must be different. Returns null, and the reason in `error`, if the
+  /// kernel refuses the socket. Not real-time safe.
   static std::unique_ptr<CanAxes> open(const std::string& interface, const std::vector<std::uint32_t>& ids,
                                        std::string& error);
   /// Takes ownership of the socket. The socket must preserve the boundaries of frames, must not block, and

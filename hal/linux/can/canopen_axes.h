@@ -21,7 +21,7 @@ class CanopenAxes : public PositionReader {
   };
   static constexpr int kMostFrames = 256;  // largest number of frames that one tick reads from the socket
 
-  /// Returns null with `error` set if the kernel refuses the socket. Not real-time safe.
+  /// Returns null, and the reason in `error`, if the kernel refuses the socket. Not real-time safe.
   static std::unique_ptr<CanopenAxes> open(const std::string& interface, const std::vector<Axis>& axes,
                                            std::string& error);
   /// Takes ownership of the socket. The socket must preserve the boundaries of frames and must not block. Not

@@ -22,8 +22,8 @@ struct CanopenPlace {
 /// of CanopenDrive.
 class CanopenOutput : public OutputDevice {
  public:
-  /// Returns null with `error` set if the CAN bus does not exist, or if the PDOs of the drive differ from
-  /// `settings`. Not real-time safe.
+  /// Returns null, and the reason in `error`, if the CAN bus does not exist, or if the PDOs of the drive
+  /// differ from `settings`. Not real-time safe.
   static std::unique_ptr<CanopenOutput> open(const CanopenPlace& place, const CanopenSettings& settings,
                                              const AnalogueScale& scale, std::string& error);
   /// Takes ownership of the socket. The socket must preserve the boundaries of frames and must not block. Not

@@ -16,8 +16,8 @@ namespace vernier {
 class ModbusLine {
  public:
   /// `device`: for example "/dev/ttyS1", with 8 data bits, `parity` N, E or O, and one stop bit; `wait`:
-  /// longest time for an answer. Returns null with `error` set if the device cannot be used. Not real-time
-  /// safe.
+  /// longest time for an answer. Returns null, and the reason in `error`, if the device cannot be used. Not
+  /// real-time safe.
   static std::shared_ptr<ModbusLine> rtu(const std::string& device, int baud, char parity, TimeUs wait,
                                          std::string& error);
   /// `address`: numeric IP address. If a peer does not answer, this is no error: each reading tries the

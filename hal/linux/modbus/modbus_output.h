@@ -59,9 +59,9 @@ class ModbusOutput : public OutputDevice {
   static TimeUs wait_for_answer(TimeUs timeout, bool serial) {
     return TimeUs(timeout.count / (serial ? 4 : 2));
   }
-  /// `line`: a Modbus line that only this output uses. Returns null with `error` set if the controller does
-  /// not answer, does not return the sequence number, or is written by another board. open() waits for the
-  /// controller. Not real-time safe.
+  /// `line`: a Modbus line that only this output uses. Returns null, and the reason in `error`, if the
+  /// controller does not answer, does not return the sequence number, or is written by another board. open()
+  /// waits for the controller. Not real-time safe.
   static std::unique_ptr<ModbusOutput> open(std::shared_ptr<ModbusLine> line,
                                             const ModbusOutputSettings& settings, std::string& error);
   /// The destructor clears the valid bits. If writes have moved the value of an earlier process to zero, the

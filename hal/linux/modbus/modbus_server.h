@@ -21,8 +21,8 @@ namespace vernier {
 /// another peer, a client of the first peer is disconnected for a client of the second peer.
 class ModbusServer : public CommandLink {
  public:
-  /// `address`: numeric, for example "127.0.0.1"; `port`: 0 selects any free port. Returns null with `error`
-  /// set if the server cannot listen. Not real-time safe.
+  /// `address`: numeric, for example "127.0.0.1"; `port`: 0 selects any free port. Returns null and the
+  /// reason in `error` if the server cannot listen. Not real-time safe.
   static std::unique_ptr<ModbusServer> tcp(const std::string& address, int port, const ModbusLayout& layout,
                                            std::string& error);
   /// `device`: for example "/dev/ttyS1", with 8 data bits, `parity` N, E or O, and one stop bit; `unit`:

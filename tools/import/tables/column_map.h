@@ -37,7 +37,7 @@ struct ColumnMap {
 void read_column_map(ColumnMap& map, const std::string& text, const std::string& file);
 
 /// Adds a column map entry: "3=x[mm]" or "Name=x[mm]" with add_column, "run=s1" or "u[um]=5" with
-/// add_constant. Throws InputError if the text is not valid.
+/// add_constant. Throws InputError if the text is not an entry of a column map.
 void add_column(ColumnMap& map, const std::string& words, const text::Place& place = {});
 void add_constant(ColumnMap& map, const std::string& words, const text::Place& place = {});
 
