@@ -229,7 +229,8 @@ double Finder::holders_of(std::size_t simple) const {
 void Finder::search() {
   scan_beside({}, 0.05, 0.3);
   select_again();
-  constexpr int kMostScans = 6;  // of all candidates beside the chosen ones, at most
+  constexpr int kMostScans = 6;     // of all candidates beside the chosen ones, at most
+  constexpr double kSettled = 0.1;  // decrease of the BIC: far below any evidence
   for (int round = 0; round < kMostScans && !chosen_.empty(); ++round) {
     const std::vector<std::size_t> before = chosen_;
     const double criterion = criterion_;
@@ -239,7 +240,7 @@ void Finder::search() {
       for (const std::size_t item : before)
         scan_beside(without(item), 0.34 + 0.08 * round, 0.38 + 0.08 * round);
     select_again();
-    if (criterion_ > criterion - 1e-6) break;
+    if (criterion_ > criterion - kSettled) break;
   }
 }
 

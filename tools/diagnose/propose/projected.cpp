@@ -5,33 +5,42 @@
 
 namespace vernier::diagnose {
 
+ProjectedBatch project(const Evidence& evidence, std::vector<GridPoint> points, Eigen::MatrixXd columns) {
+  ProjectedBatch batch{std::move(points), std::move(columns), {}, {}};
+  batch.norms = batch.columns.colwise().norm();
+  const Eigen::MatrixXd& q = evidence.absorbed();
+  const Eigen::MatrixXd part = q.transpose() * batch.columns;
+  batch.columns.noalias() -= q * part;
+  batch.grams.reserve(batch.points.size());
+  for (const GridPoint& point : batch.points) {
+    const auto own = batch.columns.middleCols(point.first, point.count);
+    batch.grams.emplace_back(own.transpose() * own);
+  }
+  return batch;
+}
+
 void ProjectedColumns::renew(const Evidence& evidence, std::size_t candidates) {
   constexpr Eigen::Index kMost = 20'000'000;  // numbers: 160 MB
   if (revision_ != evidence.revision()) {
     revision_ = evidence.revision();
     room_ = kMost;
-    points_.clear();
+    batches_.clear();
+    held_.clear();
     waves_.clear();
   }
-  points_.resize(candidates);
+  held_.resize(candidates);
   waves_.resize(candidates);
-}
-
-const std::vector<ProjectedPoint>* ProjectedColumns::points(std::size_t candidate) const {
-  return points_[candidate].empty() ? nullptr : &points_[candidate];
 }
 
 const ProjectedWaves* ProjectedColumns::waves(std::size_t candidate) const {
   return waves_[candidate].columns.cols() == 0 ? nullptr : &waves_[candidate];
 }
 
-void ProjectedColumns::keep(std::size_t candidate, std::vector<ProjectedPoint> points) {
-  Eigen::Index numbers = 0;
-  for (const ProjectedPoint& point : points) numbers += point.columns.size();
-  // Two threads that pass at one time may exceed the limit by one candidate each.
-  if (numbers == 0 || !has_room(numbers)) return;
-  room_ -= numbers;
-  points_[candidate] = std::move(points);
+void ProjectedColumns::keep(ProjectedBatch batch) {
+  if (!has_room(batch.columns.size())) return;
+  room_ -= batch.columns.size();
+  for (const GridPoint& point : batch.points) held_[point.candidate] = 1;
+  batches_.push_back(std::move(batch));
 }
 
 const ProjectedWaves& ProjectedColumns::keep(std::size_t candidate, ProjectedWaves waves) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
-#include <atomic>
 #include <cstddef>
 #include <vector>
 
@@ -9,13 +8,24 @@
 
 namespace vernier::diagnose {
 
-/// Whitened columns of a candidate at one point of its search grid, without the part that the free parameters
-/// of the model explain.
-struct ProjectedPoint {
-  std::vector<double> scanned;
-  Eigen::MatrixXd columns;
-  Eigen::RowVectorXd norms;  // norm of each column before the projection
+/// Candidate at one point of its search grid. Its columns are neighbouring columns of a ProjectedBatch.
+struct GridPoint {
+  std::size_t candidate = 0;    // index of the candidate in the scanned list
+  std::vector<double> scanned;  // values of the candidate's scanned unknowns
+  Eigen::Index first = 0, count = 0;
 };
+
+/// Whitened columns of grid points side by side, without the part that the free parameters of the model
+/// explain. The batch also contains what every scan needs from the columns alone.
+struct ProjectedBatch {
+  std::vector<GridPoint> points;
+  Eigen::MatrixXd columns;
+  Eigen::RowVectorXd norms;            // norm of each column before the projection
+  std::vector<Eigen::MatrixXd> grams;  // for each point, the scalar products of its projected columns
+};
+
+/// Projects whitened columns on the orthogonal complement of the model's free parameters.
+ProjectedBatch project(const Evidence& evidence, std::vector<GridPoint> points, Eigen::MatrixXd columns);
 
 /// Whitened sines and cosines of a cyclic error at successive frequencies, without the part that the free
 /// parameters of the model explain. The frequency k has the columns 2k and 2k + 1.
@@ -25,29 +35,33 @@ struct ProjectedWaves {
 };
 
 /// Stores the projected columns of candidates between two scans. A search scans the same candidates again for
-/// each set of accepted effects. Only the projection on the complement of the accepted effects is computed
-/// again. The columns of long records exceed the memory limit and are computed again for each scan.
+/// each set of accepted effects. Only the scalar products with the accepted effects are computed again. The
+/// columns of long records exceed the memory limit and are computed again for each scan.
 class ProjectedColumns {
  public:
   /// Deletes all stored columns if the whitening of the evidence has changed. Call renew() before each scan.
   void renew(const Evidence& evidence, std::size_t candidates);
 
-  /// Returns the stored grid points of a candidate, or null if they are not stored.
-  const std::vector<ProjectedPoint>* points(std::size_t candidate) const;
+  /// True if the columns of a candidate are in one of the stored batches.
+  bool holds(std::size_t candidate) const { return held_[candidate] != 0; }
+  /// Returns the stored batches. The columns of a candidate are all in one batch.
+  const std::vector<ProjectedBatch>& batches() const { return batches_; }
   /// Returns the stored sines and cosines of a candidate, or null if they are not stored.
   const ProjectedWaves* waves(std::size_t candidate) const;
+  /// Returns the number of values for which the store has room.
+  Eigen::Index room() const { return room_; }
   /// True if the store has room for this number of values.
   bool has_room(Eigen::Index numbers) const { return numbers <= room_; }
-  /// Stores all grid points of a candidate if the store has room. Different threads may call keep() at the
-  /// same time for different candidates.
-  void keep(std::size_t candidate, std::vector<ProjectedPoint> points);
+  /// Stores a batch if the store has room. The batch must contain all grid points of its candidates.
+  void keep(ProjectedBatch batch);
   /// Stores the sines and cosines of a candidate. Before the call, has_room() must be true for them.
   const ProjectedWaves& keep(std::size_t candidate, ProjectedWaves waves);
 
  private:
   std::size_t revision_ = 0;  // Evidence::revision() of the stored columns
-  std::atomic<Eigen::Index> room_ = 0;
-  std::vector<std::vector<ProjectedPoint>> points_;
+  Eigen::Index room_ = 0;
+  std::vector<ProjectedBatch> batches_;
+  std::vector<char> held_;  // for each candidate
   std::vector<ProjectedWaves> waves_;
 };
 

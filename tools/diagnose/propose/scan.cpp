@@ -53,170 +53,178 @@ bool vanishes(const Eigen::RowVectorXd& norms, Eigen::Index column) {
 
 }  // namespace
 
-bool Scanner::score(const ProjectedPoint& point, const Eigen::MatrixXd& beside,
-                    const Eigen::VectorXd& residual, Scored& scored) const {
-  const ScannedCandidate& item = candidates_[scored.candidate];
+ScanTarget Scanner::target(const Eigen::MatrixXd& beside) const {
+  ScanTarget target{Eigen::MatrixXd(evidence_.residual().size(), beside.cols() + 1), evidence_.residual()};
+  if (beside.cols() > 0) {
+    target.residual -= beside * (beside.transpose() * target.residual);
+    target.directions.leftCols(beside.cols()) = beside;
+  }
+  target.directions.rightCols(1) = target.residual;
+  return target;
+}
+
+bool Scanner::score(const ProjectedBatch& batch, std::size_t at, const Eigen::MatrixXd& products,
+                    Scored& scored) const {
+  const GridPoint& point = batch.points[at];
+  const ScannedCandidate& item = candidates_[point.candidate];
+  const Eigen::Index accepted = products.rows() - 1, count = point.count;
+  const auto along = products.block(0, point.first, accepted, count);
+  const auto of_residual = products.row(accepted).segment(point.first, count);
+  const auto norms = batch.norms.segment(point.first, count);
+  const Eigen::MatrixXd own = batch.grams[at] - along.transpose() * along;
+
   scored.own_share = 1;
-  Eigen::MatrixXd own = point.columns;
-  if (beside.cols() > 0) own -= beside * (beside.transpose() * own);
   Eigen::Index vanished = 0;
-  for (Eigen::Index j = 0; j < own.cols(); ++j) {
-    if (own.cols() > 1 && vanishes(point.norms, j)) {
-      own.col(j).setZero();
+  std::vector<Eigen::Index> usable;
+  for (Eigen::Index j = 0; j < count; ++j) {
+    if (count > 1 && vanishes(norms, j)) {
       ++vanished;
       continue;
     }
-    const double before = point.norms[j], after = own.col(j).norm();
-    if (!(before > 0) || !std::isfinite(after) || after < thresholds_.least_own * before) {
+    const double before = norms[j], after = std::sqrt(std::max(0.0, own(j, j)));
+    if (!(before > 0) || !std::isfinite(own(j, j)) || after < thresholds_.least_own * before) {
       if (!item.may_lose_columns) return false;
-      own.col(j).setZero();
       continue;
     }
     scored.own_share = std::min(scored.own_share, after / before);
+    usable.push_back(j);
   }
-  std::vector<std::size_t> kept;
-  const Eigen::MatrixXd basis = maths::orthonormal(own, thresholds_.least_independent, &kept);
-  if (basis.cols() == 0) return false;
-  if (!item.may_lose_columns && basis.cols() < own.cols() - vanished) return false;
-  scored.gain = (basis.transpose() * residual).squaredNorm();
-  scored.unknowns = basis.cols() + static_cast<Eigen::Index>(item.grid.size());
+  // Cholesky factor of the usable columns, in their order. A column that repeats the columns before it is
+  // left out. The same steps give the scalar products of the residual with the orthonormal columns.
+  const double least = thresholds_.least_independent * thresholds_.least_independent;
+  Eigen::MatrixXd factor(count, count);
+  std::vector<Eigen::Index> kept;
+  scored.gain = 0;
+  Eigen::VectorXd share(count);
+  for (const Eigen::Index j : usable) {
+    const auto rank = static_cast<Eigen::Index>(kept.size());
+    double pivot = own(j, j), rest = of_residual[j];
+    for (Eigen::Index k = 0; k < rank; ++k) {
+      double value = own(j, kept[static_cast<std::size_t>(k)]);
+      for (Eigen::Index i = 0; i < k; ++i) value -= factor(rank, i) * factor(k, i);
+      value /= factor(k, k);
+      factor(rank, k) = value;
+      pivot -= value * value;
+      rest -= value * share[k];
+    }
+    if (!(pivot >= least * own(j, j)) || !(pivot > 0)) continue;
+    factor(rank, rank) = std::sqrt(pivot);
+    share[rank] = rest / factor(rank, rank);
+    scored.gain += share[rank] * share[rank];
+    kept.push_back(j);
+  }
+  const auto rank = static_cast<Eigen::Index>(kept.size());
+  if (rank == 0 || (!item.may_lose_columns && rank < count - vanished)) return false;
+  scored.unknowns = rank + static_cast<Eigen::Index>(item.grid.size());
   return true;
 }
 
-Eigen::VectorXd Scanner::residual_beside(const Eigen::MatrixXd& beside) const {
-  Eigen::VectorXd residual = evidence_.residual();
-  if (beside.cols() > 0) residual -= beside * (beside.transpose() * residual);
-  return residual;
-}
-
-ProjectedPoint Scanner::projected_at(ColumnMaker& maker, std::size_t candidate,
+ProjectedBatch Scanner::projected_at(ColumnMaker& maker, std::size_t candidate,
                                      const std::vector<double>& scanned) const {
-  const Eigen::MatrixXd& q = evidence_.absorbed();
-  const Eigen::MatrixXd raw = maker.columns(candidates_[candidate].candidate, scanned);
-  return {scanned, raw - q * (q.transpose() * raw), raw.colwise().norm()};
+  Eigen::MatrixXd raw = maker.columns(candidates_[candidate].candidate, scanned);
+  const Eigen::Index count = raw.cols();
+  return project(evidence_, {{candidate, scanned, 0, count}}, std::move(raw));
 }
 
-double Scanner::gain_at(ColumnMaker& maker, const Scored& scored, const std::vector<double>& scanned,
-                        const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const {
-  Scored trial = scored;
-  return score(projected_at(maker, scored.candidate, scanned), beside, residual, trial) ? trial.gain : 0.0;
+Scored Scanner::score_at(ColumnMaker& maker, std::size_t candidate, const std::vector<double>& scanned,
+                         const ScanTarget& target) const {
+  const ProjectedBatch batch = projected_at(maker, candidate, scanned);
+  Scored scored{candidate, scanned, 0, 0, 0};
+  return score(batch, 0, target.directions.transpose() * batch.columns, scored) ? scored : Scored{};
 }
 
 /// The candidates that one thread scans.
 class Scanner::Part {
  public:
-  Part(const Scanner& scanner, ProjectedColumns& kept, const Eigen::MatrixXd& beside,
-       const Eigen::VectorXd& residual, std::vector<Scored>& best)
-      : scanner_(scanner),
-        kept_(kept),
-        beside_(beside),
-        residual_(residual),
-        best_(best),
-        maker_(scanner.evidence_) {}
+  /// `room`: numbers that the thread may keep.
+  Part(const Scanner& scanner, Eigen::Index room, const ScanTarget& target, std::vector<Scored>& best)
+      : scanner_(scanner), room_(room), target_(target), best_(best), maker_(scanner.evidence_) {}
 
-  void scan(std::size_t candidate) {
-    if (const std::vector<ProjectedPoint>* points = kept_.points(candidate)) {
-      for (const ProjectedPoint& point : *points) take(candidate, point);
-      return;
-    }
-    for (std::vector<double>& scanned : grid_points(scanner_.candidates_[candidate].grid)) {
-      Eigen::MatrixXd columns = maker_.columns(scanner_.candidates_[candidate].candidate, scanned);
-      width_ += columns.cols();
-      raw_.push_back({candidate, {std::move(scanned), std::move(columns), {}}});
-      if (width_ >= kBatch) project();
+  /// Scans the stored columns of a batch.
+  void scan(const ProjectedBatch& batch) {
+    const Eigen::MatrixXd products = target_.directions.transpose() * batch.columns;
+    for (std::size_t i = 0; i < batch.points.size(); ++i) {
+      const GridPoint& point = batch.points[i];
+      Scored scored{point.candidate, point.scanned, 0, 0, 0};
+      if (!scanner_.score(batch, i, products, scored)) continue;
+      Scored& so_far = best_[point.candidate];
+      if (so_far.unknowns == 0 || scored.gain > so_far.gain) so_far = std::move(scored);
     }
   }
-  /// Scores what is left.
-  void end() {
-    project();
-    keep();
+  /// Computes the columns of a candidate. The candidate is scanned with the next ones, in one batch.
+  void scan(std::size_t candidate) {
+    for (std::vector<double>& scanned : grid_points(scanner_.candidates_[candidate].grid)) {
+      raw_.push_back(maker_.columns(scanner_.candidates_[candidate].candidate, scanned));
+      points_.push_back({candidate, std::move(scanned), width_, raw_.back().cols()});
+      width_ += raw_.back().cols();
+    }
+    if (width_ >= kBatch) end_batch();
+  }
+  /// Scans what is left, and returns the batches for the next scans.
+  std::vector<ProjectedBatch> end() {
+    end_batch();
+    return std::move(made_);
   }
 
  private:
-  struct Raw {
-    std::size_t candidate;
-    ProjectedPoint point;
-  };
-
-  void take(std::size_t candidate, const ProjectedPoint& point) {
-    Scored scored{candidate, point.scanned, 0, 0, 0};
-    if (!scanner_.score(point, beside_, residual_, scored)) return;
-    Scored& so_far = best_[candidate];
-    if (so_far.unknowns == 0 || scored.gain > so_far.gain) so_far = std::move(scored);
-  }
-
-  void project() {
-    if (raw_.empty()) return;
-    Eigen::MatrixXd batch(residual_.size(), width_);
-    Eigen::Index at = 0;
-    for (const Raw& raw : raw_) {
-      batch.middleCols(at, raw.point.columns.cols()) = raw.point.columns;
-      at += raw.point.columns.cols();
-    }
-    const Eigen::RowVectorXd norms = batch.colwise().norm();
-    const Eigen::MatrixXd& q = scanner_.evidence_.absorbed();
-    const Eigen::MatrixXd part = q.transpose() * batch;
-    batch.noalias() -= q * part;
-    at = 0;
-    for (Raw& raw : raw_) {
-      const Eigen::Index count = raw.point.columns.cols();
-      raw.point.columns = batch.middleCols(at, count);
-      raw.point.norms = norms.segment(at, count);
-      at += count;
-      take(raw.candidate, raw.point);
-      if (raw.candidate != made_of_) keep();
-      made_of_ = raw.candidate;
-      numbers_ += raw.point.columns.size();
-      if (kept_.has_room(numbers_))
-        made_.push_back(std::move(raw.point));
-      else
-        made_.clear();  // and stays so: the candidate is made anew each time
+  void end_batch() {
+    if (points_.empty()) return;
+    Eigen::MatrixXd columns(target_.residual.size(), width_);
+    for (std::size_t i = 0; i < raw_.size(); ++i)
+      columns.middleCols(points_[i].first, points_[i].count) = raw_[i];
+    ProjectedBatch batch = project(scanner_.evidence_, std::move(points_), std::move(columns));
+    scan(batch);
+    if (batch.columns.size() <= room_) {
+      room_ -= batch.columns.size();
+      made_.push_back(std::move(batch));
     }
     raw_.clear();
+    points_.clear();
     width_ = 0;
   }
 
-  void keep() {
-    kept_.keep(made_of_, std::move(made_));
-    made_.clear();
-    numbers_ = 0;
-  }
-
   const Scanner& scanner_;
-  ProjectedColumns& kept_;
-  const Eigen::MatrixXd& beside_;
-  const Eigen::VectorXd& residual_;
+  Eigen::Index room_;
+  const ScanTarget& target_;
   std::vector<Scored>& best_;
   ColumnMaker maker_;
-  std::vector<Raw> raw_;
-  Eigen::Index width_ = 0, numbers_ = 0;
-  std::size_t made_of_ = 0;
-  std::vector<ProjectedPoint> made_;  // of that candidate
+  std::vector<Eigen::MatrixXd> raw_;
+  std::vector<GridPoint> points_;
+  Eigen::Index width_ = 0;
+  std::vector<ProjectedBatch> made_;
 };
 
 std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress,
                                   std::size_t first_candidate) {
-  const Eigen::VectorXd residual = residual_beside(beside);
+  const ScanTarget target = this->target(beside);
   kept_.renew(evidence_, candidates_.size());
   std::vector<Scored> best(candidates_.size());
   // Each thread writes the entries of its own candidates only.
   const std::size_t threads = std::max(1U, std::min(4U, std::thread::hardware_concurrency()));
+  std::vector<std::size_t> stored, others;
+  for (std::size_t i = 0; i < kept_.batches().size(); ++i) stored.push_back(i);
+  for (std::size_t c = first_candidate; c < candidates_.size(); ++c)
+    if (!kept_.holds(c)) others.push_back(c);
+  const Eigen::Index room = kept_.room() / static_cast<Eigen::Index>(threads);
   const auto scan_every = [&](std::size_t first, const std::function<void(double)>& tell) {
-    Part part(*this, kept_, beside, residual, best);
-    for (std::size_t c = first; c < candidates_.size(); c += threads) {
-      part.scan(c);
-      if (tell) tell(static_cast<double>(c) / static_cast<double>(candidates_.size()));
+    Part part(*this, room, target, best);
+    for (std::size_t i = first; i < stored.size(); i += threads) part.scan(kept_.batches()[stored[i]]);
+    for (std::size_t i = first; i < others.size(); i += threads) {
+      part.scan(others[i]);
+      if (tell) tell(static_cast<double>(i) / static_cast<double>(others.size()));
     }
-    part.end();
+    return part.end();
   };
-  std::vector<std::future<void>> others;  // each passes on the exception of its part
+  std::vector<std::future<std::vector<ProjectedBatch>>> parts;  // each passes on the exception of its part
   for (std::size_t k = 1; k < threads; ++k)
-    others.push_back(std::async(std::launch::async, [&, k] { scan_every(first_candidate + k, {}); }));
-  scan_every(first_candidate, progress);
-  for (std::future<void>& part : others) part.get();
+    parts.push_back(std::async(std::launch::async, [&, k] { return scan_every(k, {}); }));
+  std::vector<ProjectedBatch> made = scan_every(0, progress);
+  for (auto& part : parts)
+    for (ProjectedBatch& batch : part.get()) made.push_back(std::move(batch));
+  for (ProjectedBatch& batch : made) kept_.keep(std::move(batch));
   std::vector<Scored> seen;
-  for (Scored& scored : best)
-    if (scored.unknowns > 0) seen.push_back(std::move(scored));
+  for (std::size_t c = first_candidate; c < best.size(); ++c)
+    if (best[c].unknowns > 0) seen.push_back(std::move(best[c]));
   return seen;
 }
 
@@ -226,17 +234,17 @@ double Scanner::alike_within(double left) const {
 }
 
 Scored Scanner::best_period(std::size_t candidate, const std::vector<double>& periods,
-                            const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const {
+                            const ScanTarget& target) const {
   std::vector<Scored> seen;
   double most = 0;
   ColumnMaker maker(evidence_);
   for (const double period : periods) {
-    Scored scored{candidate, {period}, 0, 0, 0};
-    if (!score(projected_at(maker, candidate, scored.scanned), beside, residual, scored)) continue;
+    Scored scored = score_at(maker, candidate, {period}, target);
+    if (scored.unknowns == 0) continue;
     most = std::max(most, scored.gain);
     seen.push_back(std::move(scored));
   }
-  const double near = most - alike_within(residual.squaredNorm() - most);
+  const double near = most - alike_within(target.residual.squaredNorm() - most);
   Scored best;
   for (Scored& scored : seen)
     if (scored.gain >= near && (best.unknowns == 0 || scored.scanned[0] > best.scanned[0])) best = scored;
@@ -244,7 +252,7 @@ Scored Scanner::best_period(std::size_t candidate, const std::vector<double>& pe
 }
 
 std::vector<Scored> Scanner::scan_fine(const Eigen::MatrixXd& beside, std::size_t first_candidate) {
-  const Eigen::VectorXd residual = residual_beside(beside);
+  const ScanTarget target = this->target(beside);
   kept_.renew(evidence_, candidates_.size());
   std::map<std::size_t, std::vector<std::size_t>> of_axis;
   for (std::size_t c = first_candidate; c < candidates_.size(); ++c)
@@ -254,9 +262,9 @@ std::vector<Scored> Scanner::scan_fine(const Eigen::MatrixXd& beside, std::size_
     std::vector<const FinePeriods*> fine;
     for (const std::size_t c : list) fine.push_back(&candidates_[c].fine);
     const std::vector<std::vector<double>> periods =
-        promising_periods(evidence_, fine, beside, residual, &kept_, list);
+        promising_periods(evidence_, fine, beside, target.residual, &kept_, list);
     for (std::size_t i = 0; i < list.size(); ++i) {
-      Scored best = best_period(list[i], periods[i], beside, residual);
+      Scored best = best_period(list[i], periods[i], target);
       if (best.unknowns > 0) found.push_back(std::move(best));
     }
   }
@@ -266,7 +274,7 @@ std::vector<Scored> Scanner::scan_fine(const Eigen::MatrixXd& beside, std::size_
 void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
   const ScannedCandidate& item = candidates_[scored.candidate];
   if (item.grid.empty()) return;
-  const Eigen::VectorXd residual = residual_beside(beside);
+  const ScanTarget target = this->target(beside);
   ColumnMaker maker(evidence_);
   for (std::size_t i = 0; i < item.grid.size(); ++i) {
     // In 1/value between the neighbours: phases of a period change evenly there.
@@ -276,7 +284,7 @@ void Scanner::refine(Scored& scored, const Eigen::MatrixXd& beside) const {
     const maths::Peak best = maths::golden_peak(
         [&](double inverse) {
           point[i] = 1 / inverse;
-          return gain_at(maker, scored, point, beside, residual);
+          return score_at(maker, scored.candidate, point, target).gain;
         },
         low, high, kSections);
     if (best.value > scored.gain) {
@@ -326,19 +334,19 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
   const FinePeriodThresholds& limits = evidence_.thresholds().fine;
   const double most = limits.most_periods / length;
 
-  const Eigen::VectorXd residual = residual_beside(beside);
+  const ScanTarget target = this->target(beside);
   ColumnMaker maker(evidence_);
   const auto gain_of = [&](double frequency) {
-    return gain_at(maker, scored, {1 / frequency}, beside, residual);
+    return score_at(maker, scored.candidate, {1 / frequency}, target).gain;
   };
-  const double mine = gain_of(own), left = residual.squaredNorm() - mine;
+  const double mine = gain_of(own), left = target.residual.squaredNorm() - mine;
   const double near = mine - alike_within(left);
   const auto known = [&](const std::vector<double>& list, double frequency) {
     return std::any_of(list.begin(), list.end(),
                        [&](double other) { return std::abs(other - frequency) * length < 0.5; });
   };
   std::vector<double> frequencies = {own};
-  for (const double frequency : possible_aliases(scored, own, most, mine, beside, residual)) {
+  for (const double frequency : possible_aliases(scored, own, most, mine, beside, target.residual)) {
     if (frequency > most || frequency * length < 0.5 || known(frequencies, frequency)) continue;
     constexpr int kSections = 10;  // of a golden search
     const double width = 0.25 / length;
@@ -356,7 +364,9 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
 
 Eigen::MatrixXd Scanner::projected(const Scored& scored, std::vector<std::size_t>* kept) const {
   ColumnMaker maker(evidence_);
-  const auto [at, own, norms] = projected_at(maker, scored.candidate, scored.scanned);
+  const ProjectedBatch batch = projected_at(maker, scored.candidate, scored.scanned);
+  const Eigen::MatrixXd& own = batch.columns;
+  const Eigen::RowVectorXd& norms = batch.norms;
   std::vector<std::size_t> chosen;
   Eigen::MatrixXd usable = own;
   for (Eigen::Index j = 0; j < own.cols(); ++j)

@@ -22,6 +22,12 @@ struct Scored {
   Eigen::Index unknowns = 0;    // number of coefficients and scanned values
 };
 
+/// Part of the residual that a scan must explain: the residual after a fit of the accepted effects.
+struct ScanTarget {
+  Eigen::MatrixXd directions;  // orthonormal columns of the accepted effects, and the residual as last column
+  Eigen::VectorXd residual;
+};
+
 /// Computes the scores of all candidates for a residual. `beside`: orthonormal columns of the accepted
 /// effects, in the orthogonal complement of the model's free parameters. The part of a candidate along the
 /// columns `beside` does not count.
@@ -62,25 +68,26 @@ class Scanner {
   double alike_within(double left) const;
   /// Returns the score of a candidate with the best of the given periods, by the full decrease of the
   /// residual's chi^2.
-  Scored best_period(std::size_t candidate, const std::vector<double>& periods, const Eigen::MatrixXd& beside,
-                     const Eigen::VectorXd& residual) const;
-  /// Returns the residual after a fit of the columns `beside`. Candidates must explain this residual.
-  Eigen::VectorXd residual_beside(const Eigen::MatrixXd& beside) const;
-  /// Returns the decrease of chi^2 by a candidate at the values `scanned`; 0 if the readings do not depend on
-  /// the candidate at these values.
-  double gain_at(ColumnMaker& maker, const Scored& scored, const std::vector<double>& scanned,
-                 const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
+  Scored best_period(std::size_t candidate, const std::vector<double>& periods,
+                     const ScanTarget& target) const;
+  /// Returns what a scan beside the accepted effects must explain.
+  ScanTarget target(const Eigen::MatrixXd& beside) const;
+  /// Returns the score of a candidate at the values `scanned`. `unknowns` is 0 if the readings do not depend
+  /// on the candidate at these values.
+  Scored score_at(ColumnMaker& maker, std::size_t candidate, const std::vector<double>& scanned,
+                  const ScanTarget& target) const;
   /// Returns frequencies up to `most` at which a cyclic error may fit as well as at the frequency `own`. The
   /// alias frequencies come from the spectral window of the positions and, if the computing time permits,
   /// from all peaks of the exact decrease of chi^2 near `mine`.
   std::vector<double> possible_aliases(const Scored& scored, double own, double most, double mine,
                                        const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) const;
-  /// Sets gain, share and number of unknowns of a candidate at one point of scanned values. Returns false if
-  /// the readings do not depend on the candidate at this point.
-  bool score(const ProjectedPoint& point, const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual,
+  /// Sets gain, share and number of unknowns of the grid point `at` of a batch. `products`: scalar products
+  /// of the target's directions (rows) with the columns of the batch. Returns false if the readings do not
+  /// depend on the candidate at this point.
+  bool score(const ProjectedBatch& batch, std::size_t at, const Eigen::MatrixXd& products,
              Scored& scored) const;
-  /// Returns the projected columns of a candidate at the values `scanned`.
-  ProjectedPoint projected_at(ColumnMaker& maker, std::size_t candidate,
+  /// Returns the projected columns of a candidate at the values `scanned`, as a batch of one point.
+  ProjectedBatch projected_at(ColumnMaker& maker, std::size_t candidate,
                               const std::vector<double>& scanned) const;
 
   const Evidence& evidence_;
