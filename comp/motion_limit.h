@@ -37,8 +37,8 @@ class MotionLimit {
   }
   constexpr std::int64_t value() const noexcept { return value_; }
   constexpr std::int64_t speed() const noexcept { return speed_; }
-  /// Sets the value, and sets the speed to zero. For the start of the correction, and for a drive
-  /// that refused to move.
+  /// Sets the value without a limit, and sets the speed to zero. Used when the correction starts,
+  /// and if a drive refused to move.
   constexpr void stop_at(std::int64_t value) noexcept { value_ = value, speed_ = 0; }
 
   /// Returns a speed from which `way` counts are sufficient to stop: (v + a/2)^2 <= 2 a way. The distance (v

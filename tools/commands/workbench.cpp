@@ -80,7 +80,8 @@ std::vector<std::uint8_t> board_image(const std::string& url, const std::string&
   Progress progress("image-diff");
   auto upload =
       client.confirmed([&](double share) { progress.update(share, "reading what the board runs"); });
-  if (!upload) throw text::LimitNotMet("the store of the board has no confirmed image");
+  if (!upload)
+    throw text::LimitNotMet("the store of the board has no image that was confirmed after its trial");
   return upload::image_in(*upload);
 }
 

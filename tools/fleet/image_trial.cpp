@@ -183,7 +183,8 @@ std::string ImageTrial::settle() {
           "the trial of the board lasts only {:.0f} s more, which is shorter than the time --watch",
           std::max(0.0, left_s(look.slots)));
     }
-    if (is_over(end)) return fmt::format("the board did not use the image within {:.4g} s: {}", options_.settle_s, why);
+    if (is_over(end))
+      return fmt::format("the board did not use the image within {:.4g} s: {}", options_.settle_s, why);
     breathe();
   }
 }
@@ -235,7 +236,7 @@ TrialEnd ImageTrial::keep() {
       const BoardLook look = look_at(board_);
       const bool kept = is_kept(look.slots) && look.slots.issued == issued_;
       why = kept ? not_in_effect(look, board_.info(), fingerprint_)
-                 : "the board has not confirmed the correction image";
+                 : "the board does not report that it keeps the correction image after the trial";
       if (why.empty()) return {Kind::kKept, ""};
       std::this_thread::sleep_for(kLookEvery);
     } while (!is_over(end));

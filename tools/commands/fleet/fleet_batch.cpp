@@ -270,8 +270,9 @@ void add_batch(CLI::App& fleet) {
   command->callback([task] { run_task(*task); });
 
   const auto collect = std::make_shared<CollectArguments>();
-  command =
-      fleet.add_subcommand("collect", "record the answers of a batch in the registry, each answer once");
+  command = fleet.add_subcommand("collect",
+                                 "record the result of a batch command for each machine in the registry; a "
+                                 "repeated call records no result twice");
   command->add_option("DIR", collect->folder, "directory that `fleet batch` wrote")
       ->type_name(kReadsFolder)
       ->required();

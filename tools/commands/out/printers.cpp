@@ -74,7 +74,8 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
     extra["bed"] = bed->name;
     extra["errors"]["beyond_bed_um"] = errors.beyond_bed_um;
     if (errors.beyond_bed_um > errors.after_um[2] + exchange::kNothing_um)
-      left.push_back({"the remaining error along Z outside the region where the bed was touched", errors.beyond_bed_um});
+      left.push_back({"error along Z that remains with the files outside the touched region of the bed",
+                      errors.beyond_bed_um});
   }
   finish(machine, common, name, left, files, {}, true, extra);
 }
