@@ -241,21 +241,22 @@ class Settler {
     const MatrixXd inverse = inverse_of(data + weak_now);
     // Remaining part of a true value: (inverse * weak)^n, and the contribution of a reading.
     const MatrixXd once = inverse * weak_now;
-    MatrixXd left = once, gain = inverse;
+    MatrixXd left = once, more = once;
     for (int pass = 1; pass < kPasses; ++pass) {
-      gain = inverse + once * gain;
       left = once * left;
+      if (pass + 1 < kPasses) more += left;
     }
-    const double fitted = static_cast<double>(once.rows()) - (left * left).trace();
+    const MatrixXd gain = inverse + more * inverse;
+    const double fitted = static_cast<double>(once.rows()) - left.cwiseProduct(left.transpose()).sum();
     result_.freedom = observations_ - fitted;
     if (result_.freedom > 0.5) {
       const double reduced = result_.chi_square / result_.freedom;
       result_.variance = with_u_ ? std::max(1.0, reduced) : std::max(reduced, 1e-300);
     }
-    const MatrixXd spread = scale_.asDiagonal() * convention_.correlation * scale_.asDiagonal();
-    const MatrixXd bias = left * spread * left.transpose();
+    const Sparse spread = scale_.asDiagonal() * convention_.correlation * scale_.asDiagonal();
+    const MatrixXd bias = (left * spread) * left.transpose();
     result_.bias = bias.diagonal().cwiseMax(0).cwiseSqrt();
-    result_.covariance = gain * readings_covariance(data) * gain.transpose() + bias;
+    result_.covariance = covariance_from_readings(data, gain, left) + bias;
     result_.open = bias;
     result_.normal = std::move(data);
   }
@@ -293,10 +294,19 @@ class Settler {
     return count;
   }
 
-  /// Returns J^T W cov(readings) W J. It is `variance` times the normal matrix if errors are
-  /// independent. If they are correlated, it is their influence on a fit that assumed independence
-  /// (White 1980).
-  MatrixXd readings_covariance(const MatrixXd& data) {
+  /// Returns gain * J^T W cov(readings) W J * gain^T. For independent errors the middle is `variance` times
+  /// `data`, and gain * data = I - left, because the inverse of data + weak times data is I - once.
+  MatrixXd covariance_from_readings(const MatrixXd& data, const MatrixXd& gain, const MatrixXd& left) {
+    if (const std::optional<MatrixXd> correlated = readings_covariance(data))
+      return gain * *correlated * gain.transpose();
+    const MatrixXd half = gain - gain * left.transpose();
+    return 0.5 * result_.variance * (half + half.transpose());
+  }
+
+  /// Returns J^T W cov(readings) W J if the errors are correlated: their influence on a fit that assumed
+  /// independence (White 1980). Returns nullopt if they are independent: then it is `variance` times the
+  /// normal matrix.
+  std::optional<MatrixXd> readings_covariance(const MatrixXd& data) {
     constexpr double kMostNumbers =
         5e7;  // 400 MB of numbers: beyond this limit, rows are taken as independent
     const model::Measurement& rows = problem_.measurement();
@@ -306,7 +316,7 @@ class Settler {
     const bool given_independent = noise_ && noise_->independent();
     if (given_independent || n * p > kMostNumbers || p < 1) {
       if (noise_) result_.noise = *noise_;
-      return result_.variance * data;
+      return std::nullopt;
     }
     model::SparseRows jacobian;
     const VectorXd residual = problem_.weighted_residuals(result_.point, &jacobian)(fitted);
@@ -328,7 +338,7 @@ class Settler {
       if (basis.cols() > 0) beside -= basis * (basis.transpose() * residual);
       result_.noise = estimate_noise(layout, beside, basis, with_u_);
     }
-    if (result_.noise.independent()) return result_.variance * data;
+    if (result_.noise.independent()) return std::nullopt;
     const MatrixXd j = dense();
     MatrixXd hanging = j.transpose() * covariance_times(layout, result_.noise, j);
     hanging.diagonal() += stated_unit() * stated_.weight;
