@@ -12,7 +12,10 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "tools/model/machine_reader.h"
 #include "tools/text/files.h"
@@ -102,6 +105,27 @@ TEST_F(Pages, TutorialRunsAsPrinted) {
   for (const char* picture :
        {"tutorial_where.png", "tutorial_why.png", "tutorial_improve.png", "before_after.svg"})
     EXPECT_TRUE(fs::exists(std::string(VERNIER_SOURCE_DIR) + "/tools/docs/img/" + picture)) << picture;
+}
+
+/// The numbers of a text, and the text without them.
+std::pair<std::vector<double>, std::string> numbers_of(const std::string& text) {
+  const std::regex number("[0-9]+\\.[0-9]+");
+  std::vector<double> numbers;
+  for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it)
+    numbers.push_back(std::stod(it->str()));
+  return {numbers, std::regex_replace(text, number, "")};
+}
+
+TEST_F(Pages, PictureOfReadmeIsThatOfItsScript) {
+  const std::string folder = VERNIER_SOURCE_DIR "/tools/docs/img/";
+  ASSERT_EQ(run("python3 '" + folder + "before_after.py' \"$(command -v vernier)\" >picture.svg"), 0)
+      << said_;
+  const auto [made, made_text] = numbers_of(read_file(folder_ + "/picture.svg"));
+  const auto [kept, kept_text] = numbers_of(read_file(folder + "before_after.svg"));
+  EXPECT_EQ(made_text, kept_text);
+  ASSERT_EQ(made.size(), kept.size());
+  constexpr double kPixel = 0.3;  // another compiler rounds otherwise
+  for (std::size_t i = 0; i < made.size(); ++i) EXPECT_NEAR(made[i], kept[i], kPixel) << "number " << i;
 }
 
 TEST_F(Pages, ConformityAndPlanRunAsPrinted) {
