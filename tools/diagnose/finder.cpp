@@ -104,9 +104,10 @@ void Finder::name_simplest() {
 }
 
 void Finder::scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first) {
-  const Eigen::MatrixXd beside = maths::orthonormal(pool_.columns(items), 1e-6, nullptr);
+  const Eigen::MatrixXd accepted = pool_.columns(items);
+  const Eigen::MatrixXd beside = maths::orthonormal(accepted, 1e-6, nullptr);
   std::vector<Scored> scored = scanner_.scan(
-      beside,
+      accepted,
       [&](double share) {
         progress_(from + share * (to - from), fmt::format("{} candidates", list_.size()));
       },

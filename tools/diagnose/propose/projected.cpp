@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/diagnose/propose/projected.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace vernier::diagnose {
@@ -19,12 +20,44 @@ ProjectedBatch project(const Evidence& evidence, std::vector<GridPoint> points, 
   return batch;
 }
 
+std::vector<std::size_t> KnownProducts::prepare(const Eigen::MatrixXd& columns, std::size_t batches) {
+  constexpr std::size_t kMost = 400;  // columns: with 20 000 stored columns 64 MB of products
+  if (known_.size() + static_cast<std::size_t>(columns.cols()) > kMost) known_.clear();
+  std::vector<std::size_t> prepared;
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    const auto is_it = [&](const Known& known) { return known.column == columns.col(j); };
+    const auto found = std::find_if(known_.begin(), known_.end(), is_it);
+    prepared.push_back(static_cast<std::size_t>(found - known_.begin()));
+    if (found == known_.end()) known_.push_back({columns.col(j), {}});
+  }
+  for (const std::size_t k : prepared) known_[k].of_batch.resize(batches);
+  return prepared;
+}
+
+Eigen::MatrixXd KnownProducts::products(const std::vector<std::size_t>& prepared, const ProjectedBatch& batch,
+                                        std::size_t at) {
+  std::vector<std::size_t> missing;
+  for (const std::size_t k : prepared)
+    if (known_[k].of_batch[at].size() == 0) missing.push_back(k);
+  Eigen::MatrixXd columns(batch.columns.rows(), static_cast<Eigen::Index>(missing.size()));
+  for (std::size_t i = 0; i < missing.size(); ++i)
+    columns.col(static_cast<Eigen::Index>(i)) = known_[missing[i]].column;
+  const Eigen::MatrixXd made = columns.transpose() * batch.columns;
+  for (std::size_t i = 0; i < missing.size(); ++i)
+    known_[missing[i]].of_batch[at] = made.row(static_cast<Eigen::Index>(i));
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(prepared.size()), batch.columns.cols());
+  for (std::size_t i = 0; i < prepared.size(); ++i)
+    all.row(static_cast<Eigen::Index>(i)) = known_[prepared[i]].of_batch[at];
+  return all;
+}
+
 void ProjectedColumns::renew(const Evidence& evidence, std::size_t candidates) {
   constexpr Eigen::Index kMost = 20'000'000;  // numbers: 160 MB
   if (revision_ != evidence.revision()) {
     revision_ = evidence.revision();
     room_ = kMost;
     batches_.clear();
+    products_.clear();
     held_.clear();
     waves_.clear();
   }

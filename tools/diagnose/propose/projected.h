@@ -34,6 +34,28 @@ struct ProjectedWaves {
   Eigen::RowVectorXd squares;  // sum of squares of each column before the projection
 };
 
+/// Scalar products of accepted columns with the columns of the stored batches. A column that an earlier scan
+/// used is not multiplied again.
+class KnownProducts {
+ public:
+  /// Deletes all products.
+  void clear() { known_.clear(); }
+  /// Prepares the products of `columns` with `batches` batches. Returns the numbers with which products()
+  /// finds them.
+  std::vector<std::size_t> prepare(const Eigen::MatrixXd& columns, std::size_t batches);
+  /// Returns the scalar products of the prepared columns (rows) with the columns of the batch `at`. Different
+  /// threads may call products() at the same time for different batches.
+  Eigen::MatrixXd products(const std::vector<std::size_t>& prepared, const ProjectedBatch& batch,
+                           std::size_t at);
+
+ private:
+  struct Known {
+    Eigen::VectorXd column;
+    std::vector<Eigen::RowVectorXd> of_batch;  // empty: not yet computed
+  };
+  std::vector<Known> known_;
+};
+
 /// Stores the projected columns of candidates between two scans. A search scans the same candidates again for
 /// each set of accepted effects. Only the scalar products with the accepted effects are computed again. The
 /// columns of long records exceed the memory limit and are computed again for each scan.
@@ -46,6 +68,8 @@ class ProjectedColumns {
   bool holds(std::size_t candidate) const { return held_[candidate] != 0; }
   /// Returns the stored batches. The columns of a candidate are all in one batch.
   const std::vector<ProjectedBatch>& batches() const { return batches_; }
+  /// Returns the scalar products of accepted columns with the stored batches.
+  KnownProducts& products() { return products_; }
   /// Returns the stored sines and cosines of a candidate, or null if they are not stored.
   const ProjectedWaves* waves(std::size_t candidate) const;
   /// Returns the number of values for which the store has room.
@@ -61,6 +85,7 @@ class ProjectedColumns {
   std::size_t revision_ = 0;  // Evidence::revision() of the stored columns
   Eigen::Index room_ = 0;
   std::vector<ProjectedBatch> batches_;
+  KnownProducts products_;
   std::vector<char> held_;  // for each candidate
   std::vector<ProjectedWaves> waves_;
 };

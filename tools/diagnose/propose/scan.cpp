@@ -15,6 +15,9 @@ namespace {
 
 /// Columns that are projected together: one product of matrices instead of many of vectors.
 constexpr Eigen::Index kBatch = 192;
+/// Accepted columns that depend on each other to this share are one column.
+constexpr double kIndependent = 1e-6;
+
 /// Returns 1/value of the neighbours of a tested value.
 std::pair<double, double> neighbours(const ScannedCandidate& item, std::size_t unknown, double value) {
   if (item.fine.holds(value)) return {1 / value - item.fine.step, 1 / value + item.fine.step};
@@ -140,9 +143,8 @@ class Scanner::Part {
   Part(const Scanner& scanner, Eigen::Index room, const ScanTarget& target, std::vector<Scored>& best)
       : scanner_(scanner), room_(room), target_(target), best_(best), maker_(scanner.evidence_) {}
 
-  /// Scans the stored columns of a batch.
-  void scan(const ProjectedBatch& batch) {
-    const Eigen::MatrixXd products = target_.directions.transpose() * batch.columns;
+  /// Scans a batch. `products`: scalar products of the target's directions with the columns of the batch.
+  void scan(const ProjectedBatch& batch, const Eigen::MatrixXd& products) {
     for (std::size_t i = 0; i < batch.points.size(); ++i) {
       const GridPoint& point = batch.points[i];
       Scored scored{point.candidate, point.scanned, 0, 0, 0};
@@ -173,7 +175,7 @@ class Scanner::Part {
     for (std::size_t i = 0; i < raw_.size(); ++i)
       columns.middleCols(points_[i].first, points_[i].count) = raw_[i];
     ProjectedBatch batch = project(scanner_.evidence_, std::move(points_), std::move(columns));
-    scan(batch);
+    scan(batch, target_.directions.transpose() * batch.columns);
     if (batch.columns.size() <= room_) {
       room_ -= batch.columns.size();
       made_.push_back(std::move(batch));
@@ -194,21 +196,54 @@ class Scanner::Part {
   std::vector<ProjectedBatch> made_;
 };
 
-std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& beside, const std::function<void(double)>& progress,
-                                  std::size_t first_candidate) {
+/// The directions of a target as linear combinations of columns that stay the same from scan to scan: the
+/// accepted columns, and the residual of the evidence.
+struct Scanner::Sources {
+  Eigen::MatrixXd columns;
+  Eigen::MatrixXd combine;  // directions^T = combine * columns^T
+};
+
+Scanner::Sources Scanner::sources(const Eigen::MatrixXd& accepted, const std::vector<std::size_t>& kept,
+                                  const Eigen::MatrixXd& beside) const {
+  const Eigen::Index count = beside.cols();
+  Sources sources{Eigen::MatrixXd(evidence_.residual().size(), count + 1),
+                  Eigen::MatrixXd::Zero(count + 1, count + 1)};
+  sources.columns.rightCols(1) = evidence_.residual();
+  sources.combine(count, count) = 1;
+  if (count == 0) return sources;
+  for (Eigen::Index j = 0; j < count; ++j)
+    sources.columns.col(j) = accepted.col(static_cast<Eigen::Index>(kept[static_cast<std::size_t>(j)]));
+  // accepted = beside * upper, so beside^T = upper^-T * accepted^T.
+  const Eigen::MatrixXd upper = beside.transpose() * sources.columns.leftCols(count);
+  const Eigen::MatrixXd inverse =
+      upper.triangularView<Eigen::Upper>().transpose().solve(Eigen::MatrixXd::Identity(count, count));
+  sources.combine.topLeftCorner(count, count) = inverse;
+  sources.combine.block(count, 0, 1, count) =
+      -(beside.transpose() * evidence_.residual()).transpose() * inverse;
+  return sources;
+}
+
+std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& accepted,
+                                  const std::function<void(double)>& progress, std::size_t first_candidate) {
+  std::vector<std::size_t> kept;
+  const Eigen::MatrixXd beside = maths::orthonormal(accepted, kIndependent, &kept);
   const ScanTarget target = this->target(beside);
+  const Sources sources = this->sources(accepted, kept, beside);
   kept_.renew(evidence_, candidates_.size());
+  const std::vector<std::size_t> prepared = kept_.products().prepare(sources.columns, kept_.batches().size());
   std::vector<Scored> best(candidates_.size());
   // Each thread writes the entries of its own candidates only.
   const std::size_t threads = std::max(1U, std::min(4U, std::thread::hardware_concurrency()));
-  std::vector<std::size_t> stored, others;
-  for (std::size_t i = 0; i < kept_.batches().size(); ++i) stored.push_back(i);
+  std::vector<std::size_t> others;
   for (std::size_t c = first_candidate; c < candidates_.size(); ++c)
     if (!kept_.holds(c)) others.push_back(c);
   const Eigen::Index room = kept_.room() / static_cast<Eigen::Index>(threads);
   const auto scan_every = [&](std::size_t first, const std::function<void(double)>& tell) {
     Part part(*this, room, target, best);
-    for (std::size_t i = first; i < stored.size(); i += threads) part.scan(kept_.batches()[stored[i]]);
+    for (std::size_t i = first; i < kept_.batches().size(); i += threads) {
+      const ProjectedBatch& batch = kept_.batches()[i];
+      part.scan(batch, sources.combine * kept_.products().products(prepared, batch, i));
+    }
     for (std::size_t i = first; i < others.size(); i += threads) {
       part.scan(others[i]);
       if (tell) tell(static_cast<double>(i) / static_cast<double>(others.size()));
