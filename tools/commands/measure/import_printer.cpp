@@ -56,9 +56,10 @@ void run_printer(PrinterArguments& arguments) {
   if (read.twist)
     fmt::print(out,
                "z_compensations of [axis_twist_compensation]: {}. The rows are touches of the nozzle at the "
-               "touched points. If the touches are older than z_compensations, state --twist add\n",
-               arguments.options.twist == Twist::kAdd ? "the command adds them to the heights"
-                                                      : "the heights include them");
+               "touched points\n",
+               arguments.options.twist == Twist::kAdd
+                   ? "the command adds them to the heights"
+                   : "the heights include them (if the touches are older, state --twist add)");
   else if (read.kind != importer::PrinterFile::Kind::kProbeLog || read.offset_mm[0] != 0 ||
            read.offset_mm[1] != 0)
     fmt::print(
