@@ -76,6 +76,19 @@ TEST_F(ProbedBed, ImproveAddsNoTermThatCheckRowsOfTheNozzleDoNotConfirm) {
   EXPECT_EQ(json["not_confirmed"]["check_rows"], 0);
 }
 
+TEST_F(ProbedBed, AnExistingMachineFileGetsAnArtefact) {
+  std::string text = kMachine;
+  const std::string bed = "  <artefact name=\"bed\" type=\"plane\"/>";
+  text.erase(text.find(bed), bed.size());
+  text::write_file(folder + "/none.xml", text);
+  ASSERT_EQ(run("vernier set none.xml --artefact bed:plane -o with.xml"), 0) << said;
+  EXPECT_THAT(text::read_file(folder + "/with.xml"), HasSubstr("<artefact name=\"bed\" type=\"plane\"/>"));
+  EXPECT_EQ(run("vernier fit with.xml bed.csv -o fit.xml"), 0) << said;
+  EXPECT_EQ(run("vernier set with.xml --artefact bed:plane -o again.xml"), 1) << said;
+  EXPECT_EQ(run("vernier set none.xml --artefact bed:blob -o again.xml"), 1) << said;
+  EXPECT_EQ(run("vernier set none.xml -o again.xml"), 1) << said;
+}
+
 TEST_F(ProbedBed, ExportStatesTheHeightsThatTheProbeDoesNotDetermine) {
   ASSERT_EQ(run("vernier fit p.xml bed.csv -o fit.xml"), 0) << said;
   EXPECT_THAT(said, HasSubstr("the machine file has the inputs probeX and probeY"));
