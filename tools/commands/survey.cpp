@@ -2,6 +2,7 @@
 #include "tools/commands/survey.h"
 
 #include "tools/commands/command.h"
+#include "tools/effects/probe_offset.h"
 #include "tools/effects/roles.h"
 #include "tools/model/file_set_ups.h"
 #include "tools/model/machine_reader.h"
@@ -37,6 +38,12 @@ Survey read_survey(const SurveyArguments& arguments,
   };
   read();
   std::vector<std::string> notes;
+  if (effects::ProbeDeclared probe = effects::with_probe_offset(survey.text, survey.machine, survey.rows);
+      !probe.notes.empty()) {
+    survey.text = std::move(probe.text);
+    notes = std::move(probe.notes);
+    read();
+  }
   for (const auto with_set_ups : {model::with_set_ups_of_files, model::with_camera_mountings}) {
     model::SetUpsOfFiles own = with_set_ups(survey.text, survey.machine, survey.rows);
     if (own.notes.empty()) continue;

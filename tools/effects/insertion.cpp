@@ -23,6 +23,11 @@ std::size_t closing_tag(const std::string& text, std::size_t at, const std::stri
 
 std::size_t offset_of(const pugi::xml_node& node) { return static_cast<std::size_t>(node.offset_debug()); }
 
+pugi::xml_node element_named(const pugi::xml_node& parent, const char* name) {
+  return parent.find_node(
+      [name](const pugi::xml_node& node) { return text::equal_no_case(node.name(), name); });
+}
+
 text::TextEdit at_end_of(const std::string& text, const pugi::xml_node& node, const std::string& lines) {
   const std::size_t end_of_start = text.find('>', text::end_of_attributes(text, offset_of(node)));
   if (text[end_of_start - 1] == '/')

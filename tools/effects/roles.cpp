@@ -40,12 +40,6 @@ std::string line_of(const model::CandidateInput& candidate, model::InputRole rol
                      model::kInputRoleNames[static_cast<std::size_t>(role)]);
 }
 
-/// Returns the first element of that name.
-pugi::xml_node element_named(const pugi::xml_node& parent, const char* name) {
-  return parent.find_node(
-      [name](const pugi::xml_node& node) { return text::equal_no_case(node.name(), name); });
-}
-
 }  // namespace
 
 ColumnRole parse_column_role(const std::string& statement) {

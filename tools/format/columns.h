@@ -27,6 +27,8 @@ inline constexpr std::array kBoard = {"bx", "by", "bz"};
 inline constexpr std::array kBoardRotation = {"brx", "bry", "brz"};
 inline constexpr const char* kSame = "same";
 inline constexpr const char* kOn = "on";
+/// Inputs with the position of an offset probe in the frame of the tool; not in the table of columns.
+inline constexpr std::array kProbe = {"probeX", "probeY"};
 inline constexpr const char* kLength = "length";
 inline constexpr const char* kDeviation = "d";
 inline constexpr const char* kDistance = "distance";

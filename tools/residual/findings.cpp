@@ -22,11 +22,35 @@ constexpr double kTellable = 1e-3;
 /// Of the variance: a smaller share is not reported, however significant.
 constexpr double kWorthSaying = 0.002;
 
+/// Step of which all positions of a column are multiples, from the first position; nullopt if they are
+/// scattered.
+std::optional<double> step_of(const KindSample& sample, const RecordedColumn& column) {
+  std::vector<double> values;
+  for (const std::size_t row : sample.rows) values.push_back(column.value[static_cast<Eigen::Index>(row)]);
+  std::sort(values.begin(), values.end());
+  const double range = values.back() - values.front();
+  constexpr double kEqual = 1e-6;   // of the range: digits of a file
+  constexpr double kMostSteps = 4;  // for each position: more are digits of the file, not a step
+  double step = range, positions = 1;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (values[i] - values[i - 1] > kEqual * range) {
+      step = std::min(step, values[i] - values[i - 1]);
+      ++positions;
+    }
+  if (range > kMostSteps * positions * step) return std::nullopt;
+  for (const double at : values) {
+    const double steps = (at - values.front()) / step;
+    if (std::abs(steps - std::round(steps)) > kEqual * range / step) return std::nullopt;
+  }
+  return step;
+}
+
 /// A selected term, with its additional functions (a period is not a function of the basis).
 struct Taken {
   BasisTerm term;
   std::optional<Period> period;
   double log_p = 0;
+  std::vector<double> parts = {};  // further periods of the same pattern
 };
 
 class Search {
@@ -48,6 +72,7 @@ class Search {
     while (taken_.size() < kMostFindings && take_best()) {
     }
     prune();
+    join_periods();
     if (!constant_needed())
       std::erase_if(taken_, [](const Taken& one) { return one.term.shape == Shape::kConstant; });
     return taken_;
@@ -286,7 +311,9 @@ class Search {
 
   /// Adds a period as two functions to the basis.
   bool take_period(const Found& found) {
-    const auto [s, c] = sine_functions(found.column, found.period.length);
+    Period period = found.period;
+    period.length = refined_period(sample_, context_.columns[found.column], left(with({})), period.length);
+    const auto [s, c] = sine_functions(found.column, period.length);
     const Eigen::Index first = matrix_.cols();
     Eigen::MatrixXd both(matrix_.rows(), 2);
     both << s, c;
@@ -300,9 +327,55 @@ class Search {
     matrix_.conservativeResize(Eigen::NoChange, first + 2);
     matrix_.rightCols(2) = both;
     BasisTerm term{Shape::kPeriodic, found.column, {}, 0, {first, first + 1}, {}};
-    taken_.push_back({term, found.period, found.log_p});
+    taken_.push_back({term, period, found.log_p, {}});
     refresh();
     return true;
+  }
+
+  double range_of(std::size_t column) const {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const std::size_t row : sample_.rows) {
+      low = std::min(low, context_.columns[column].value[static_cast<Eigen::Index>(row)]);
+      high = std::max(high, context_.columns[column].value[static_cast<Eigen::Index>(row)]);
+    }
+    return high - low;
+  }
+
+  /// Are two periods of a column parts of one pattern? Neighbours within one cycle over the range describe a
+  /// sine whose amplitude or period changes along the axis; multiples of a frequency describe a pattern that
+  /// is no sine. At positions that are multiples of a step, a multiple appears at its alias.
+  static bool of_one_pattern(double one, double other, double range, std::optional<double> step) {
+    constexpr double kNeighbour = 1, kMultiple = 0.1;  // cycles over the range
+    constexpr int kMostMultiple = 6;
+    const double first = range / one, second = range / other;
+    if (std::abs(first - second) < kNeighbour) return true;
+    for (int times = 2; times <= kMostMultiple; ++times) {
+      const double tolerance = kMultiple * times;
+      if (std::abs(first - times * second) < tolerance) return true;
+      double multiple = times * first;
+      if (step) multiple = std::abs(std::remainder(multiple, range / *step));
+      if (std::abs(multiple - second) < tolerance) return true;
+    }
+    return false;
+  }
+
+  /// Joins the periods of one pattern to one term, that of the strongest period.
+  void join_periods() {
+    for (std::size_t i = 0; i < taken_.size(); ++i) {
+      if (!taken_[i].period) continue;
+      const double range = range_of(taken_[i].term.column);
+      const std::optional<double> step = step_of(sample_, context_.columns[taken_[i].term.column]);
+      for (std::size_t k = taken_.size() - 1; k > i; --k) {
+        const Taken& part = taken_[k];
+        if (!part.period || part.term.column != taken_[i].term.column ||
+            !of_one_pattern(taken_[i].period->length, part.period->length, range, step))
+          continue;
+        taken_[i].term.subject.insert(taken_[i].term.subject.end(), part.term.subject.begin(),
+                                      part.term.subject.end());
+        taken_[i].parts.insert(taken_[i].parts.begin(), part.period->length);
+        taken_.erase(taken_.begin() + static_cast<std::ptrdiff_t>(k));
+      }
+    }
   }
 
   /// Removes terms that the others have made superfluous, weakest first.
@@ -380,7 +453,11 @@ class Describer {
     f.rms_um = std::sqrt((curve.array() - mean).square().mean());
     f.low_um = curve.minCoeff() - mean;
     f.high_um = curve.maxCoeff() - mean;
-    if (one.period) f.period = one.period->length;
+    if (one.period) {
+      f.period = one.period->length;
+      f.parts = one.parts;
+      find_aliases(one, f, facts);
+    }
     if (one.term.shape == Shape::kPeriodic && !one.period) f.period = 360.0 / one.term.order;
     if (one.term.shape != Shape::kConstant) {
       f.column = context_.columns[one.term.column].name;
@@ -398,6 +475,17 @@ class Describer {
   }
 
  private:
+  /// The shorter periods that give the same readings, if the positions are multiples of one step: the
+  /// frequencies 1/step - f and 1/step + f.
+  void find_aliases(const Taken& one, Finding& f, SentenceFacts& facts) const {
+    const auto found = step_of(sample_, context_.columns[one.term.column]);
+    if (!found) return;
+    const double step = *found;
+    const double frequency = 1 / one.period->length, of_step = 1 / step;
+    facts.step = step;
+    f.aliases = {1 / (of_step - frequency), 1 / (of_step + frequency)};
+  }
+
   void shares(std::size_t at, Finding& f) const {
     const Taken& one = taken_[at];
     if (one.term.shape == Shape::kConstant) {

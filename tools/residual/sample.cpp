@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include "tools/format/readings.h"
 #include "tools/maths/chance.h"
@@ -100,6 +101,8 @@ std::size_t value_count(const KindSample& sample, const RecordedColumn& column) 
   std::sort(values.begin(), values.end());
   return static_cast<std::size_t>(std::unique(values.begin(), values.end()) - values.begin());
 }
+
+constexpr double kOversampling = 4;  // steps per cycle over the range: a peak loses at most 5 % between them
 
 /// Least squares of a residual on constant, sine and cosine from their sums; weights included.
 struct SineSums {
@@ -215,8 +218,6 @@ std::vector<KindSample> kind_samples(const model::Measurement& m, const Eigen::V
 
 std::optional<Period> strongest_period(const KindSample& sample, const RecordedColumn& column,
                                        const Eigen::VectorXd& residual) {
-  constexpr double kOversampling =
-      4;  // steps per cycle over the range: a peak loses at most 5 % between them
   constexpr double kMostCycles = 100;  // over the range: shorter periods need more positions than are read
   const std::size_t values = value_count(sample, column), n = sample.rows.size();
   if (values < 12) return std::nullopt;
@@ -256,6 +257,35 @@ std::optional<Period> strongest_period(const KindSample& sample, const RecordedC
   best.part.rank = 2;
   if (best.tried == 0 || best.length == 0) return std::nullopt;
   return best;
+}
+
+double refined_period(const KindSample& sample, const RecordedColumn& column, const Eigen::VectorXd& residual,
+                      double length) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const std::size_t row : sample.rows) {
+    low = std::min(low, column.value[static_cast<Eigen::Index>(row)]);
+    high = std::max(high, column.value[static_cast<Eigen::Index>(row)]);
+  }
+  const auto explained = [&](double frequency) {
+    SineSums sums;
+    for (std::size_t i = 0; i < sample.rows.size(); ++i) {
+      const double angle =
+          2 * std::numbers::pi * frequency * (column.value[static_cast<Eigen::Index>(sample.rows[i])] - low);
+      sums.add(std::cos(angle), std::sin(angle), sample.weight[static_cast<Eigen::Index>(i)],
+               residual[static_cast<Eigen::Index>(i)]);
+    }
+    return sums.explained(nullptr);
+  };
+  // Golden section between the two neighbouring steps of the scan; the peak of a sine is wider than this.
+  constexpr double kGolden = 0.6180339887498949;
+  const double step = 1 / (kOversampling * (high - low));
+  double from = 1 / length - step, to = 1 / length + step;
+  for (int i = 0; i < 30; ++i) {
+    const double left = to - kGolden * (to - from), right = from + kGolden * (to - from);
+    (explained(left) > explained(right) ? to : from) = explained(left) > explained(right) ? right : left;
+  }
+  const double refined = (from + to) / 2;
+  return explained(refined) > explained(1 / length) ? 1 / refined : length;
 }
 
 PairTest correlate(const Eigen::VectorXd& residual,

@@ -66,6 +66,12 @@ struct Period {
 std::optional<Period> strongest_period(const KindSample& sample, const RecordedColumn& column,
                                        const Eigen::VectorXd& residual);
 
+/// Returns the period near `length` at which a sine explains most of the residual: the scan of
+/// strongest_period has steps of a quarter of a cycle over the range of the column. At a period between two
+/// steps, the sine of the step leaves a part of the pattern, which a second sine beside it would explain.
+double refined_period(const KindSample& sample, const RecordedColumn& column, const Eigen::VectorXd& residual,
+                      double length);
+
 /// Correlation of the residual between the two rows of pairs without common rows.
 struct PairTest {
   double correlation = 0, pairs = 0, log_p = 0;

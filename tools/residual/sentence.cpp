@@ -60,6 +60,24 @@ std::string along_column(const Finding& f, const SentenceFacts& facts) {
                      spanning(f, facts));
 }
 
+/// Further periods of the same pattern, and periods that the positions do not distinguish from it.
+std::string other_periods(const Finding& f, const SentenceFacts& facts) {
+  const auto list = [&](const std::vector<double>& periods) {
+    std::string text;
+    for (std::size_t i = 0; i < periods.size(); ++i)
+      text += fmt::format("{}{:.4g}", i == 0 ? "" : i + 1 == periods.size() ? " and " : ", ", periods[i]);
+    return text + (facts.unit.empty() ? "" : " " + facts.unit);
+  };
+  std::string text;
+  if (!f.parts.empty())
+    text += fmt::format("; the period{} {} {} to this pattern", f.parts.size() > 1 ? "s" : "", list(f.parts),
+                        f.parts.size() > 1 ? "belong" : "belongs");
+  if (!f.aliases.empty())
+    text += fmt::format("; at positions {} apart, the periods {} give the same readings",
+                        with_unit(facts.step, facts.unit), list(f.aliases));
+  return text;
+}
+
 std::string statement(const Finding& f, const SentenceFacts& facts) {
   const double half = (f.high_um - f.low_um) / 2;
   switch (f.shape) {
@@ -73,7 +91,8 @@ std::string statement(const Finding& f, const SentenceFacts& facts) {
                          f.high_um - f.low_um, unit_of(f), facts.lowest_run, facts.highest_run);
     case Shape::kPeriodic:
       return fmt::format("{} repeats every {} of {} with an amplitude of {:.3g} {}", subject(f),
-                         with_unit(f.period.value_or(0), facts.unit), f.column, half, unit_of(f));
+                         with_unit(f.period.value_or(0), facts.unit), f.column, half, unit_of(f)) +
+             other_periods(f, facts);
     case Shape::kProduct:
       if (f.column == format::columns::kRun || f.second_column == format::columns::kRun)
         return fmt::format("{} depends on {} differently from run to run ({:.3g} {} in all)", subject(f),

@@ -14,6 +14,7 @@ struct SentenceFacts {
   double at_low_um = 0, at_high_um = 0;  // value of the explained curve at `low` and at `high`
   double highest_at = 0, lowest_at = 0;  // values of the column at which the curve has its maximum and
                                          // minimum
+  double step = 0;                       // of positions that are multiples of one step; 0: they are not
   bool monotone = false, time = false;
   std::string highest_run, lowest_run;
   std::vector<std::string> disagreeing;  // runs in which the effect should be visible but is not

@@ -39,6 +39,8 @@ struct Finding {
   double rms_um = 0;       // rms of the explained part; urad for rotations
   double low_um = 0, high_um = 0;           // smallest and largest value of the explained curve
   std::optional<double> period;             // period, in the unit of the column
+  std::vector<double> parts;                // further periods of the same pattern, in the unit of the column
+  std::vector<double> aliases;              // shorter periods that give the same readings at these positions
   std::size_t runs = 0, runs_agreeing = 0;  // number of runs in which the effect should be visible, and
                                             // number of runs in which the effect is visible
   bool in_all_runs = false;

@@ -29,6 +29,8 @@ Json findings_json(const residual::FailurePicture& picture) {
                     {"low_um", f.low_um},
                     {"high_um", f.high_um},
                     {"period", text::or_null(f.period)},
+                    {"period_parts", f.parts},
+                    {"period_aliases", f.aliases},
                     {"runs", f.runs},
                     {"runs_agreeing", f.runs_agreeing},
                     {"in_all_runs", f.in_all_runs},

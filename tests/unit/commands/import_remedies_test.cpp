@@ -61,6 +61,30 @@ TEST_F(ImportRemedies, OfATableKeepTheOptionsOfTheCall) {
   EXPECT_THAT(text::read_file(folder + "/read.csv"), testing::StartsWith("X[mm],x[mm],run,u[um],Y[mm]\n"));
 }
 
+/// A robot with two joints, and a table that has its joints under other names.
+constexpr const char* kArm = R"xml(<machine name="arm"><variables><static><k value="0" nominal="0"/></static>
+  <machineaxes><J1 rotary="true" min="-180" max="180"/><J2 rotary="true" min="-180" max="180"/></machineaxes></variables>
+  <transforms><sixdof n="1" rZ="J1"/><sixdof n="2" X="300+k" rZ="J2"/><sixdof n="3" X="200"/></transforms></machine>)xml";
+
+TEST_F(ImportRemedies, OfARobotProposeTheAssignmentOfItsJoints) {
+  text::write_file(folder + "/arm.xml", kArm);
+  text::write_file(folder + "/log.csv", "q1,q2,x [mm],y [mm]\n10,20,1,2\n11,21,3,4\n12,25,5,6\n");
+  ASSERT_EQ(run("vernier import table log.csv --machine arm.xml -o read.csv"), 1) << said;
+  EXPECT_THAT(said, HasSubstr("--column \"J1[deg]=q1\" --column \"J2[deg]=q2\" -o read.csv"));
+  ASSERT_EQ(run(remedy()), 0) << said;
+  EXPECT_THAT(text::read_file(folder + "/read.csv"),
+              testing::StartsWith("J1[deg],J2[deg],x[mm],y[mm]\n10,20,"));
+}
+
+TEST_F(ImportRemedies, JointsWithTheNumbersAndUnitsOfTheAxesAreRead) {
+  text::write_file(folder + "/arm.xml", kArm);
+  text::write_file(folder + "/log.csv", "A1 [deg],A2 [deg],x [mm],y [mm]\n10,20,1,2\n11,21,3,4\n12,25,5,6\n");
+  ASSERT_EQ(run("vernier import table log.csv --machine arm.xml -o read.csv"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("are the axes of the machine, by their numbers: J1=A1 [deg], J2=A2 [deg]"));
+  EXPECT_THAT(text::read_file(folder + "/read.csv"),
+              testing::StartsWith("J1[deg],J2[deg],x[mm],y[mm]\n10,20,"));
+}
+
 TEST_F(ImportRemedies, OfATrackerReadTheFileThatIsThere) {
   text::write_file(folder + "/pts.txt", "// SA\nP1, 0.01, 400, 0\nP2, 100, 400.01, 0\nP3, 200, 400, 0.01\n");
   const std::string call =

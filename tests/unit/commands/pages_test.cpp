@@ -98,7 +98,7 @@ TEST_F(Pages, TutorialRunsAsPrinted) {
   // The figures that the page prints.
   for (const char* figure :
        {"bed > Y (bridge) > X (carriage) > Z (ram) > tool", "3.129 um", "3.374 um",
-        "The residual is 3.3 times the noise", "X error repeats every 62.71 mm", "period 63.62 +- 0.14 mm",
+        "The residual is 3.3 times the noise", "X error repeats every 62.76 mm", "period 63.62 +- 0.14 mm",
         "check rows 2.468 um", "check rows 1.285 um", "verdict: consistent"})
     EXPECT_NE(said_.find(figure), std::string::npos) << figure << " is not what the commands print\n"
                                                      << said_;

@@ -10,6 +10,7 @@
 
 #include "tools/exchange/printer/correction.h"
 #include "tools/exchange/printer/firmware_files.h"
+#include "tools/maths/decompositions.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
@@ -168,6 +169,127 @@ TEST(PrinterBed, HeightsFollowItsSlopeWhereItWasTouched) {
     // Beyond the mesh, up to 40 mm in X and 30 mm in Y, the end values are held.
     EXPECT_NEAR(errors.beyond_bed_um, 40 * 1 + 30 * 2, 40);
   }
+}
+
+/// A simulated printer: a beam that turns about Y over the travel of Y and sags, an X carriage that rolls
+/// about X, a bed with a bow and a wave, and a probe beside the nozzle.
+struct ProbedPrinter {
+  static constexpr std::array<double, 2> kOffset = {-30, 20};
+  double roll = 0.0008;  // of the carriage about X at the ends of its travel, rad
+
+  static double bed(double x, double y) {
+    const auto arch = [](double at) { return 1 - (at - 110) * (at - 110) / 12100; };
+    return 0.001 * x + 0.15 * arch(x) * arch(y) + 0.03 * std::sin(x / 15) * std::cos(y / 17);
+  }
+  /// Height of a point at `offset` beside the nozzle above its nominal height.
+  double error(double x, double y, const std::array<double, 2>& offset) const {
+    const double turn = 0.0014 * (y - 110) / 220;
+    return -0.15 * (1 - (x - 110) * (x - 110) / 12100) - turn * (x + offset[0]) +
+           roll * (x - 110) / 110 * offset[1];
+  }
+  /// Row of a measurement: the axes when the probe, or the nozzle, touches the bed at x and y.
+  std::string row(double x, double y, bool of_probe, const char* role = "") const {
+    const std::array<double, 2> offset = of_probe ? kOffset : std::array<double, 2>{};
+    const double ax = x - offset[0], ay = y - offset[1];
+    const double z = bed(x, y) - error(ax, ay, offset);
+    std::ostringstream text;
+    text << std::fixed << ax << ',' << ay << ',' << z << ',' << offset[0] << ',' << offset[1] << ",bed,"
+         << role << '\n';
+    return text.str();
+  }
+  /// A survey of 19 x 19 touches of the probe.
+  std::string mesh() const {
+    std::string text = "X[mm],Y[mm],Z[mm],probeX[mm],probeY[mm],on,role\n";
+    for (int j = 0; j < 19; ++j)
+      for (int i = 0; i < 19; ++i) text += row(10 + 170 * i / 18.0, 25 + 185 * j / 18.0, true);
+    return text;
+  }
+  /// Largest error of the nozzle's height between the stations, without a constant offset, um; `slope`:
+  /// without the slope too.
+  double largest_um(const KlipperFile& file, bool slope = false) const {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> x(25, 170), y(35, 200);
+    Eigen::VectorXd off(500);
+    Eigen::MatrixXd plane(500, 3);
+    for (Eigen::Index i = 0; i < off.size(); ++i) {
+      const double ax = x(random), ay = y(random);
+      off[i] = 1000 * (file.height(ax, ay) + error(ax, ay, {}) - bed(ax, ay));
+      plane.row(i) << 1, ax, ay;
+    }
+    if (!slope) plane.rightCols(2).setZero();
+    const Eigen::VectorXd fitted = plane * maths::least_norm(plane, off);
+    return (off - fitted).cwiseAbs().maxCoeff();
+  }
+};
+
+/// The machine of the survey; `sag` and `twist` as a fit gives them.
+Machine probed_machine(double twist_deg, double sag) {
+  std::ostringstream text;
+  text << R"xml(<machine name="printer"><variables><static><twist value=")xml" << twist_deg
+       << R"xml(" nominal="0" unit="deg"/><sag value=")xml" << sag << R"xml(" nominal="0" unit="mm"/></static>
+  <machineaxes><X min="0" max="220"/><Y min="0" max="220"/><Z min="0" max="250"/></machineaxes>
+  <inputs><probeX unit="mm" reference="0"/><probeY unit="mm" reference="0"/></inputs>
+  <artefact name="bed" type="plane"/></variables><transforms branch="tool">
+  <sixdof n="1" Y="Y" Z="Z" rY="twist*(Y-110)/220"/><sixdof n="2" X="X" Z="sag*(1-(X-110)*(X-110)/12100)"/>
+  <sixdof n="3" X="probeX" Y="probeY"/></transforms>
+  <fitted><measured><X min="40" max="210"/><Y min="5" max="190"/>
+  <probeX min="-30" max="-30"/><probeY min="20" max="20"/></measured>
+  <plane name="bed" x="100" y="100" z="0" nx="0" ny="0" nz="1"/></fitted></machine>)xml";
+  return parse_machine(text.str(), "printer.xml");
+}
+
+KlipperFile mesh_of_touches(const Machine& machine, const std::string& touches, BedShape* shape = nullptr) {
+  const ThreeAxes axes = three_axes(machine);
+  std::optional<Bed> bed = bed_of(machine, axes, "");
+  if (!touches.empty()) give_shape(*bed, machine, axes, parse_measurement(touches, "bed.csv", machine));
+  if (shape != nullptr) *shape = *bed->shape;
+  PrinterCorrection correction =
+      printer_correction(machine, axes, features_of(Firmware::kKlipper, {}), at_rest(machine), 1, bed);
+  return KlipperFile(firmware_files(Firmware::kKlipper, {}, "bed", correction).at(0).text);
+}
+
+TEST(PrinterBedShape, IsRightAtTheNozzleWhereAnOffsetProbeTouched) {
+  ProbedPrinter printer;
+  printer.roll = 0;
+  const Machine machine = probed_machine(0.0014 * 57.29578, -0.15);
+  const KlipperFile plane = mesh_of_touches(machine, ""), shaped = mesh_of_touches(machine, printer.mesh());
+  EXPECT_GT(printer.largest_um(plane, true), 60);  // the bow of the bed remains
+  // Spline between stations 10 mm apart of a wave of 94 mm, and bilinear cells of the mesh.
+  EXPECT_LT(printer.largest_um(shaped), 3);
+}
+
+TEST(PrinterBedShape, TouchesOfTheNozzleGiveWhatTheProbeDoesNotShow) {
+  const ProbedPrinter printer;
+  // The fit took a part of the bow for the sag of the beam, and does not know the roll.
+  const Machine machine = probed_machine(0.0014 * 57.29578, -0.05);
+  BedShape alone({BedTouch{{0, 0, 0}, {0, 0, 0}, {}, false}, BedTouch{{9, 0, 0}, {9, 0, 0}, {}, false},
+                  BedTouch{{0, 9, 0}, {0, 9, 0}, {}, false}}),
+      with = alone;
+  const std::string mesh = printer.mesh();
+  const double before = printer.largest_um(mesh_of_touches(machine, mesh, &alone));
+  EXPECT_GT(before, 20);
+  EXPECT_GT(alone.undetermined_um, before);  // the stated size is a bound
+  std::string touches = mesh;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) touches += printer.row(20 + 75 * i, 35 + 80 * j, false);
+  for (int i = 0; i < 12; ++i) touches += printer.row(25 + 13 * i, 40 + 71 * i % 160, false, "check");
+  const KlipperFile file = mesh_of_touches(machine, touches, &with);
+  EXPECT_LT(printer.largest_um(file), 3);
+  EXPECT_EQ(with.by_nozzle, 9U);
+  EXPECT_EQ(with.checks, 12U);
+  EXPECT_LT(with.check_rms_um, 2);
+  EXPECT_EQ(with.undetermined_um, 0);
+}
+
+TEST(PrinterBedShape, OfAPlaneIsTheRegionOfTheTouchedPoints) {
+  const Machine machine = probed_machine(0, 0);
+  std::string text = "X[mm],Y[mm],Z[mm],probeX[mm],probeY[mm],on\n";
+  const std::optional<Bed> bed = bed_of(machine, three_axes(machine), "");
+  EXPECT_DOUBLE_EQ(bed->low[0], 10);
+  EXPECT_DOUBLE_EQ(bed->high[0], 180);
+  EXPECT_DOUBLE_EQ(bed->low[1], 25);
+  EXPECT_DOUBLE_EQ(bed->high[1], 210);
+  EXPECT_THROW(mesh_of_touches(machine, text + "40,5,0,-30,20,bed\n50,5,0,-30,20,bed\n"), text::InputError);
 }
 
 TEST(PrinterBed, IsTheNamedPlaneOrTheOnlyOne) {

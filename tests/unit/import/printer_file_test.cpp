@@ -31,13 +31,22 @@ const std::string kConfiguration =
     "#*# min_y = 30.0\n#*# max_y = 200.0\n";
 
 TEST(PrinterFile, SavedMeshOfKlipperIsPositionsOfTheNozzle) {
-  EXPECT_EQ(read(kConfiguration),
-            "X[mm],Y[mm],Z[mm],on\n60,20,-0.1,bed\n160,20,0.02,bed\n260,20,0.05,bed\n60,190,0.07,bed\n"
-            "160,190,0.08,bed\n260,190,-0.03,bed\n");
+  EXPECT_EQ(
+      read(kConfiguration),
+      "X[mm],Y[mm],Z[mm],probeX[mm],probeY[mm],on\n60,20,-0.1,-40,10,bed\n160,20,0.02,-40,10,bed\n"
+      "260,20,0.05,-40,10,bed\n60,190,0.07,-40,10,bed\n160,190,0.08,-40,10,bed\n260,190,-0.03,-40,10,bed"
+      "\n");
   PrinterOptions options;
   options.offset_mm = {0, 0}, options.artefact = "plate", options.u_um = 8;
   EXPECT_THAT(read(kConfiguration, options),
               testing::StartsWith("X[mm],Y[mm],Z[mm],on,u[um]\n20,30,-0.1,plate,8\n"));
+}
+
+// A mesh in a file that the printer includes, as `vernier export klipper` writes it.
+TEST(PrinterFile, AMeshWithoutTheMarksOfSavedLines) {
+  std::string text = kConfiguration;
+  for (std::size_t at = 0; (at = text.find("#*# ", at)) != std::string::npos;) text.erase(at, 4);
+  EXPECT_EQ(read(text), read(kConfiguration));
 }
 
 TEST(PrinterFile, MeshIsChosenByName) {
@@ -115,14 +124,42 @@ TEST(PrinterFile, TouchesThatThePrinterRepeatsAreLeftOut) {
 TEST(PrinterFile, TouchesOfTheProbeArePositionsLessItsOffset) {
   PrinterOptions options;
   options.offset_mm = {-20, 5};
-  const std::string rows = "X[mm],Y[mm],Z[mm],on\n50,35,0.5,bed\n";
+  const std::string rows = "X[mm],Y[mm],Z[mm],probeX[mm],probeY[mm],on\n50,35,0.5,-20,5,bed\n";
   EXPECT_EQ(read("probe: at 30.0,40.0 bed will contact at z=0.5\n", options), rows);
   EXPECT_EQ(read("Bed X: 30.0 Y: 40.0 Z: 0.5\n", options), rows);
   EXPECT_EQ(read("[probe]\nx_offset = -20\ny_offset = 5\nprobe: at 30.0,40.0 bed will contact at z=0.5\n"),
             rows);
-  EXPECT_THAT(read("probe at 30.0,40.0 is z=0.5\n", options), HasSubstr("omit --offset"));
+  // The older line of Klipper has the position of the nozzle: the offset moves the touched point alone.
+  EXPECT_EQ(read("probe at 30.0,40.0 is z=0.5\n", options),
+            "X[mm],Y[mm],Z[mm],probeX[mm],probeY[mm],on\n30,40,0.5,-20,5,bed\n");
+  EXPECT_EQ(read("[probe]\nx_offset = -20\ny_offset = 5\nprobe at 30.0,40.0 is z=0.5\n"),
+            "X[mm],Y[mm],Z[mm],probeX[mm],probeY[mm],on\n30,40,0.5,-20,5,bed\n");
+  EXPECT_FALSE(read_printer_file("probe at 30.0,40.0 is z=0.5\n", "p.cfg", {}).offset_known);
   EXPECT_THAT(read("[include probe.cfg]\n[x]\na: 1\n" + kConfiguration.substr(kConfiguration.find("#*#"))),
               HasSubstr("state it with --offset"));
+}
+
+// Klipper's axis_twist_compensation: nozzle height minus probe height over X; the mesh has it already, or
+// not.
+TEST(PrinterFile, ACompensatedMeshHasHeightsOfTheNozzle) {
+  const std::string twist =
+      "[axis_twist_compensation]\nz_compensations = -0.1, 0.0, 0.3\ncompensation_start_x = 20\n"
+      "compensation_end_x = 220\n";
+  const std::string file = twist + kConfiguration;
+  EXPECT_EQ(read(file),
+            "X[mm],Y[mm],Z[mm],on\n20,30,-0.1,bed\n120,30,0.02,bed\n220,30,0.05,bed\n20,200,0.07,bed\n"
+            "120,200,0.08,bed\n220,200,-0.03,bed\n");
+  PrinterOptions options;
+  options.twist = PrinterOptions::Twist::kAdd;
+  EXPECT_EQ(read(file, options),
+            "X[mm],Y[mm],Z[mm],on\n20,30,-0.2,bed\n120,30,0.02,bed\n220,30,0.35,bed\n20,200,-0.03,bed\n"
+            "120,200,0.08,bed\n220,200,0.27,bed\n");
+  EXPECT_THAT(read(kConfiguration, options), HasSubstr("has no z_compensations"));
+  options.twist = PrinterOptions::Twist::kIgnore;
+  EXPECT_EQ(read(file, options), read(kConfiguration));
+  EXPECT_THAT(
+      read("[axis_twist_compensation]\nz_compensations = 0.1\nstart_x = 1\nend_x = 2\n" + kConfiguration),
+      HasSubstr("two values or more"));
 }
 
 TEST(PrinterFile, TouchesOfAProbeWithoutItsOffsetAreRefused) {

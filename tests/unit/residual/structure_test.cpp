@@ -250,6 +250,54 @@ TEST(FailurePicture, PeriodIsFound) {
   EXPECT_NEAR(*f.period, 12.5, 12.5 / 48 / 4);
 }
 
+/// Findings of a period along X.
+std::vector<Finding> periods(const FailurePicture& picture) {
+  std::vector<Finding> list;
+  for (const Finding& f : picture.findings)
+    if (f.shape == Shape::kPeriodic && f.column == "X") list.push_back(f);
+  return list;
+}
+
+// A strong sine between two steps of the scan, and a pattern that is no sine: each is one finding.
+TEST(FailurePicture, OnePatternIsOnePeriod) {
+  Planted sine;
+  plant(sine.residual, sine.m, ObservationKind::kX,
+        [&](Eigen::Index i) { return 20e-3 * std::sin(2 * 3.14159265358979 * sine.axis(0)[i] / 20.37); });
+  const std::vector<Finding> of_sine = periods(sine.picture());
+  ASSERT_EQ(of_sine.size(), 1U);
+  EXPECT_NEAR(*of_sine[0].period, 20.37, 0.02);  // 20 um beside 1 um of noise: a hundredth of a cycle of 29
+  EXPECT_TRUE(of_sine[0].parts.empty());
+  EXPECT_TRUE(of_sine[0].aliases.empty());  // the positions are scattered
+  Planted saw;
+  plant(saw.residual, saw.m, ObservationKind::kX, [&](Eigen::Index i) {
+    const double turns = saw.axis(0)[i] / 36.7;
+    return 10e-3 * (turns - std::floor(turns) - 0.5);
+  });
+  const std::vector<Finding> of_saw = periods(saw.picture());
+  ASSERT_EQ(of_saw.size(), 1U);
+  EXPECT_NEAR(*of_saw[0].period, 36.7, 0.1);
+  ASSERT_GE(of_saw[0].parts.size(), 2U);
+  EXPECT_NEAR(of_saw[0].parts[0], 36.7 / 2, 0.1);
+  EXPECT_NE(of_saw[0].sentence.find("belong to this pattern"), std::string::npos);
+}
+
+// At even positions the multiples beyond half a period of the step appear at their aliases.
+TEST(FailurePicture, AliasesOfOnePatternAreOneFinding) {
+  Planted saw;
+  for (double& x : saw.m.states.axis[0]) x = 5 * std::round(x / 5);
+  plant(saw.residual, saw.m, ObservationKind::kX, [&](Eigen::Index i) {
+    const double turns = saw.axis(0)[i] / 36.7;
+    return 20e-3 * (turns - std::floor(turns) - 0.5);
+  });
+  const std::vector<Finding> found = periods(saw.picture());
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(*found[0].period, 36.7, 0.1);
+  EXPECT_GE(found[0].parts.size(), 3U);
+  ASSERT_EQ(found[0].aliases.size(), 2U);
+  EXPECT_NEAR(found[0].aliases[1], 1 / (1 / 5.0 + 1 / 36.7), 0.02);
+  EXPECT_NE(found[0].sentence.find("at positions 5 mm apart"), std::string::npos);
+}
+
 TEST(FailurePicture, InteractionIsNamed) {
   Planted p;
   const Column& t = p.m.states.input[0];

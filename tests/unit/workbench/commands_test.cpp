@@ -180,6 +180,9 @@ TEST(WorkbenchCommand, ThePageGetsWhatTheProgramDeclaresOfAllowedOptionsOnly) {
   // The command itself can do without it; the page must keep its result.
   EXPECT_EQ(option("fit", "output")["required"], true);
   EXPECT_TRUE(option("fit", "residuals").is_null());
+  // The positions of a tracker's points may be in another file.
+  EXPECT_EQ(option("import tracker", "nominal")["kind"], "reads");
+  EXPECT_EQ(option("import tracker", "machine")["kind"], "reads");
   EXPECT_TRUE(options("sh").is_null());
 }
 

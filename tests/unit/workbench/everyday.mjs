@@ -203,6 +203,18 @@ async function printer(page) {
   await chosen(page, 'with_bed.xml');
   assert.ok(readFileSync(join(folder, 'with_bed.xml'), 'utf8').includes('<artefact name="bed" type="plane"/>'));
   await page.until("document.getElementById('begin').hidden", 'the rows to be read');
+  // The machine file without a bed gets one too.
+  const choose = (machine) =>
+    page.evaluate(
+      `(() => { const one = document.getElementById('machine'); one.value = '${machine}'; one.dispatchEvent(new Event('change', { bubbles: true })); })()`,
+    );
+  await choose('printer.xml');
+  await page.until("document.getElementById('declare')", 'the way to declare the bed');
+  await page.click('#declare');
+  await chosen(page, 'printer_touched.xml');
+  assert.ok(readFileSync(join(folder, 'printer_touched.xml'), 'utf8').includes('<artefact name="bed" type="plane"/>'));
+  await choose('with_bed.xml');
+  await page.until("document.getElementById('begin').hidden", 'the rows to be read');
   // Read with another offset: the field is there.
   await page.click('#read-differently');
   await page.type('#import-box [data-option=u]', '5');

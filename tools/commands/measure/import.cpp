@@ -48,7 +48,7 @@ std::string call_of(const CLI::App& kind, const std::vector<std::string>& withou
 }
 
 void require_axes(const importer::ImportTable& table, const model::Machine& machine, const CLI::App& kind,
-                  const std::string& hint) {
+                  const std::string& hint, const std::vector<std::string>& columns) {
   std::string first, set;
   for (const model::Axis& axis : machine.axes) {
     if (table.find(axis.name) != nullptr) continue;
@@ -56,6 +56,8 @@ void require_axes(const importer::ImportTable& table, const model::Machine& mach
     set += " " + model::set_of_axis(axis);
   }
   if (first.empty()) return;
+  if (!columns.empty()) set.clear();
+  for (const std::string& column : columns) set += " --column " + in_quotes(column);
   const CLI::Option* const output = kind.get_option_no_throw("--output");
   const bool named = output != nullptr && output->count() > 0;
   throw text::InputError({table.file, 0}, first,

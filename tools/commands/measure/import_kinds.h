@@ -22,9 +22,10 @@ void add_import_output(CLI::App& kind, ImportOutput& output);
 std::string call_of(const CLI::App& kind, const std::vector<std::string>& without);
 
 /// Throws InputError if a table has no column for an axis of the machine. The message has the call of the
-/// user with the option that adds a constant position. `hint`: text before this call.
+/// user with the option that adds a constant position. `hint`: text before this call. `columns`: words of the
+/// option --column that the call has instead.
 void require_axes(const importer::ImportTable& table, const model::Machine& machine, const CLI::App& kind,
-                  const std::string& hint);
+                  const std::string& hint, const std::vector<std::string>& columns = {});
 
 // Each kind of import (instrument file format) has one function of this type. The function of a kind of
 // import adds the options and the callback to the subcommand.

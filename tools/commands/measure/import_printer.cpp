@@ -14,6 +14,7 @@ namespace {
 
 struct PrinterArguments {
   std::string file;
+  std::string twist = "included";
   std::vector<double> offset;
   importer::PrinterOptions options;
   ImportOutput output;
@@ -33,6 +34,10 @@ const char* name_of(importer::PrinterFile::Kind kind) {
 
 void run_printer(PrinterArguments& arguments) {
   if (!arguments.offset.empty()) arguments.options.offset_mm = {arguments.offset[0], arguments.offset[1]};
+  using Twist = importer::PrinterOptions::Twist;
+  arguments.options.twist = arguments.twist == "add"      ? Twist::kAdd
+                            : arguments.twist == "ignore" ? Twist::kIgnore
+                                                          : Twist::kIncluded;
   const importer::PrinterFile read = importer::read_printer_file(
       sheet::utf8_text(text::read_file(arguments.file)), arguments.file, arguments.options);
   text::write_file(arguments.output.csv_path, importer::measurement_csv(read.table));
@@ -41,15 +46,32 @@ void run_printer(PrinterArguments& arguments) {
                                           {"source", name_of(read.kind)},
                                           {"profile", read.name},
                                           {"offset_mm", read.offset_mm},
+                                          {"twist", read.twist},
                                           {"n_not_probed", read.not_probed},
                                           {"n_left_out", read.left_out},
                                           {"n_rows", rows}});
   std::FILE* out = human_stream(arguments.output.json_path);
   fmt::print(out, "{}{}: {} touches of the artefact \"{}\"\n", name_of(read.kind),
              read.name.empty() ? "" : " " + read.name, rows, arguments.options.artefact);
-  if (read.kind != importer::PrinterFile::Kind::kProbeLog || read.offset_mm[0] != 0 || read.offset_mm[1] != 0)
-    fmt::print(out, "axis positions: the touched point minus the offset of the probe ({:g}, {:g}) mm\n",
-               read.offset_mm[0], read.offset_mm[1]);
+  if (read.twist)
+    fmt::print(out,
+               "z_compensations of [axis_twist_compensation]: {}. The rows are touches of the nozzle at the "
+               "touched points\n",
+               arguments.options.twist == Twist::kAdd
+                   ? "the command adds them to the heights"
+                   : "the heights include them (if the touches are older, state --twist add)");
+  else if (read.kind != importer::PrinterFile::Kind::kProbeLog || read.offset_mm[0] != 0 ||
+           read.offset_mm[1] != 0)
+    fmt::print(
+        out,
+        "axis positions: the position of the nozzle; the probe is at ({:g}, {:g}) mm beside the nozzle "
+        "(columns probeX, probeY)\n",
+        read.offset_mm[0], read.offset_mm[1]);
+  if (!read.offset_known)
+    fmt::print(
+        out,
+        "note: the file does not state the offset of a probe: the rows are touches of the nozzle itself. "
+        "If a probe touched, state --offset=X,Y in mm\n");
   if (read.not_probed > 0)
     fmt::print(out, "{} points of the height map have no reading and are omitted\n", read.not_probed);
   if (read.left_out > 0)
@@ -78,6 +100,11 @@ void add_printer_kind(CLI::App& kind) {
           "required if the file has none")
       ->delimiter(',')
       ->expected(2);
+  kind.add_option("--twist", arguments->twist,
+                  "z_compensations of [axis_twist_compensation] (Klipper): included (the heights include "
+                  "them), add (the touches are older: the command adds them), or ignore")
+      ->check(CLI::IsMember({"included", "add", "ignore"}))
+      ->capture_default_str();
   kind.add_option("--series", arguments->options.series,
                   "number of the survey of the bed, from 1, if a log has several");
   kind.add_option("--u", arguments->options.u_um, "standard uncertainty of a touch, um")

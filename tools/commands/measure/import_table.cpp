@@ -6,12 +6,15 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
+#include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/delimited.h"
 #include "tools/import/tables/sheet_import.h"
 #include "tools/import/tables/survey.h"
+#include "tools/import/words/joint_names.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"
+#include "tools/text/words.h"
 
 namespace vernier::commands::import_cli {
 namespace {
@@ -56,6 +59,43 @@ void print_rows(std::FILE* out, const std::string& csv) {
   }
 }
 
+/// The axes without a column, and the columns of numbers that nothing claims.
+struct OpenAxes {
+  std::vector<importer::MissingAxis> axes;
+  std::vector<importer::FreeColumn> columns;
+  importer::JointColumns found;
+  /// Words of the option --column for the columns that were found.
+  std::vector<std::string> words() const {
+    std::vector<std::string> list;
+    for (const auto& [axis, column] : found.pairs)
+      list.push_back(importer::column_word(axes[axis], columns[column]));
+    return list;
+  }
+};
+
+OpenAxes open_axes(const model::Machine& machine, const importer::SheetReading& reading) {
+  using Use = importer::SheetColumn::Use;
+  OpenAxes open;
+  const auto stated = [&](const std::string& name) {
+    return std::any_of(reading.columns.begin(), reading.columns.end(),
+                       [&](const auto& one) { return one.use == Use::kColumn && one.name == name; }) ||
+           std::any_of(reading.wishes.constants.begin(), reading.wishes.constants.end(),
+                       [&](const auto& one) { return one.name == name; });
+  };
+  for (const model::Axis& axis : machine.axes)
+    if (!stated(axis.name)) open.axes.push_back({axis.name, axis.rotary});
+  for (std::size_t k = 0; k < reading.columns.size(); ++k) {
+    const importer::SheetColumn& column = reading.columns[k];
+    if (column.use != Use::kColumn || column.words || column.why != "by its heading" ||
+        importer::is_known_name(column.name) || importer::is_sense(column.name) ||
+        machine.find_axis(column.name) || machine.find_input(column.name))
+      continue;
+    open.columns.push_back({reading.table.headings[k].text, reading.table.headings[k].name, column.unit});
+  }
+  open.found = importer::joint_columns(open.axes, open.columns);
+  return open;
+}
+
 void run_table(const TableArguments& arguments, const CLI::App& kind) {
   importer::SheetWishes wishes;
   if (!arguments.profile.empty())
@@ -64,8 +104,21 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
   if (!arguments.machine.empty())
     for (const model::Axis& axis : model::read_machine(arguments.machine).axes)
       words.axes.push_back(axis.name);
-  const importer::SheetReading reading =
-      importer::read_as_sheet(text::read_file(arguments.file), arguments.file, words, std::move(wishes));
+  const std::string bytes = text::read_file(arguments.file);
+  importer::SheetReading reading = importer::read_as_sheet(bytes, arguments.file, words, wishes);
+  OpenAxes open;
+  if (!arguments.machine.empty()) {
+    open = open_axes(model::read_machine(arguments.machine), reading);
+    if (open.found.sure) {
+      const std::vector<std::string> more = open.words();
+      words.columns.insert(words.columns.end(), more.begin(), more.end());
+      reading = importer::read_as_sheet(bytes, arguments.file, words, std::move(wishes));
+      reading.sheet.notes.push_back(
+          fmt::format("columns with other names are the axes of the machine, {}: {}", open.found.why,
+                      text::joined(more, ", ")));
+      open = {};
+    }
+  }
   const sheet::Sheet& sheet = reading.sheet;
   std::FILE* out = human_stream(arguments.json);
   if (arguments.preview) print_columns(out, reading);
@@ -78,7 +131,13 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
       throw;
     }
   }();
-  if (!arguments.machine.empty())
+  if (!open.found.pairs.empty())
+    require_axes(
+        read, model::read_machine(arguments.machine), kind,
+        "no column of the table has the name of this axis. As many other columns may be the axes in the "
+        "order of the machine file. If this assignment and its units are right, give: ",
+        open.words());
+  else if (!arguments.machine.empty())
     require_axes(
         read, model::read_machine(arguments.machine), kind,
         "no column of the table is the position of this axis. If a column has this position under "

@@ -2,13 +2,17 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <pugixml.hpp>
 
 #include "tools/commands/command.h"
+#include "tools/create/machine_plan.h"
+#include "tools/effects/insertion.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/model/parameters.h"
 #include "tools/text/numbers.h"
+#include "tools/text/xml_text.h"
 #include "tools/workbench/files/excluded.h"
 #include "tools/workbench/files/values.h"
 
@@ -42,11 +46,33 @@ void run_exclude(const ExcludeArguments& arguments) {
 
 struct SetArguments {
   std::string machine, output, json;
-  std::vector<std::string> values;
+  std::vector<std::string> values, artefacts;
 };
 
+/// The machine text with artefacts "NAME:TYPE" at the end of <variables>.
+std::string with_artefacts(const std::string& text, const SetArguments& arguments) {
+  if (arguments.artefacts.empty()) return text;
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+  const pugi::xml_node variables = effects::element_named(document, "variables");
+  if (!variables)
+    throw text::InputError({arguments.machine, 0}, "variables",
+                           "the machine file has no <variables> element; add one");
+  std::string lines;
+  for (const std::string& words : arguments.artefacts) {
+    const create::PlannedArtefact one = create::parse_planned_artefact(words);
+    lines +=
+        fmt::format("    <artefact name=\"{}\" type=\"{}\"/>\n", text::escape_attribute(one.name), one.type);
+  }
+  const std::string changed = text::apply_edits(text, {effects::at_end_of(text, variables, lines)});
+  model::parse_machine(changed, arguments.machine);  // refuses a name that the machine file has already
+  return changed;
+}
+
 void run_set(const SetArguments& arguments) {
-  const std::string text = text::read_file(arguments.machine);
+  if (arguments.values.empty() && arguments.artefacts.empty())
+    throw text::InputError("set: give a value (NAME=NUMBER) or --artefact NAME:TYPE");
+  const std::string text = with_artefacts(text::read_file(arguments.machine), arguments);
   model::Machine machine = model::parse_machine(text, arguments.machine);
   std::map<std::string, double> values;
   for (const std::string& word : arguments.values) {
@@ -56,11 +82,14 @@ void run_set(const SetArguments& arguments) {
     values[word.substr(0, at)] = *value;
   }
   workbench::set_values(machine, values);
-  text::write_file(arguments.output, model::update_machine_text(text, machine, true));
-  nlohmann::ordered_json json = {{"machine", arguments.output}, {"values", values}};
+  text::write_file(arguments.output, values.empty() ? text : model::update_machine_text(text, machine, true));
+  nlohmann::ordered_json json = {
+      {"machine", arguments.output}, {"values", values}, {"artefacts", arguments.artefacts}};
   write_json(arguments.json, json);
   for (const auto& [name, value] : values)
     fmt::print(human_stream(arguments.json), "{} = {:.10g}\n", name, value);
+  for (const std::string& words : arguments.artefacts)
+    fmt::print(human_stream(arguments.json), "artefact {} declared\n", words);
 }
 
 }  // namespace
@@ -92,12 +121,17 @@ void register_exclude(CLI::App& vernier) {
 
 void register_set(CLI::App& vernier) {
   auto arguments = std::make_shared<SetArguments>();
-  CLI::App* command = vernier.add_subcommand("set", "Set parameters of a machine by hand");
+  CLI::App* command =
+      vernier.add_subcommand("set", "Set parameters of a machine by hand, or declare a touched object");
   command->add_option("MACHINE", arguments->machine, "machine file (XML)")->type_name(kReads)->required();
+  command->add_option("VALUES", arguments->values,
+                      "new value of a parameter: NAME=NUMBER, with the name as in the result of fit");
   command
-      ->add_option("VALUES", arguments->values,
-                   "new value of a parameter: NAME=NUMBER, with the name as in the result of fit")
-      ->required();
+      ->add_option(
+          "--artefact", arguments->artefacts,
+          "touched object to declare in the machine: NAME:TYPE, such as bed:plane; types: point, line, "
+          "plane, sphere, cylinder; may be repeated")
+      ->allow_extra_args(false);
   command->add_option("-o,--output", arguments->output, "the new machine file")
       ->type_name(kWrites)
       ->required();

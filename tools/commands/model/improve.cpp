@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <set>
 
 #include "tools/commands/command.h"
 #include "tools/commands/report_header.h"
@@ -12,6 +13,8 @@
 #include "tools/compile/compile.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/sentences.h"
+#include "tools/exchange/printer/bed_shape.h"
+#include "tools/format/columns.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/rebind.h"
 #include "tools/plan/advice.h"
@@ -167,6 +170,7 @@ class Improver {
     if (d.verdict != diagnose::Verdict::kMissingEffect) return false;
     for (std::size_t i = 1; i < d.ladder.size(); ++i) {
       const diagnose::LadderStep& step = d.ladder[i];
+      if (not_confirmed_at_tool_point(step)) return false;
       if (!agreed(arguments_, step, out_)) return false;
       take({"+ " + step.said, step.effect, step.add, "", step.text, step.rms_um, step.check_rms_um,
             step.rms_urad, step.check_rms_urad});
@@ -178,6 +182,59 @@ class Improver {
     return true;
   }
 
+  /// A step that was learned from touches of an offset probe: true, with a sentence, if check rows that touch
+  /// with the tool point itself do not confirm it. The probe has another position than the tool, and touches
+  /// of one probe do not distinguish the shape of the touched object from an error of a carriage.
+  bool not_confirmed_at_tool_point(const diagnose::LadderStep& step) {
+    const model::Machine before = model::parse_machine(model_steps_.back().text, model_steps_.back().file),
+                         after = model::parse_machine(step.text, arguments_.survey.machine);
+    for (const std::string& plane : planes_of_probe()) {
+      const exchange::BedShape from(
+          exchange::bed_touches(before, model::rebind(all_rows_, first_, before), plane)),
+          to(exchange::bed_touches(after, model::rebind(all_rows_, first_, after), plane));
+      Json record = {{"effect", step.effect}, {"artefact", plane}, {"check_rows", from.checks}};
+      if (from.checks == 0) {
+        not_confirmed_ = fmt::format(
+            "not added: {}. The rows touch \"{}\" with a probe at ({:g}, {:g}) mm beside the tool point, and "
+            "no "
+            "check row touches it with the tool point. The term may be the shape of \"{}\" or an error at "
+            "the "
+            "probe alone. Touch some points with the tool point (rows with role check, probeX and probeY 0)",
+            step.said, plane, from.offset[0], from.offset[1], plane);
+      } else if (to.check_rms_um > from.check_rms_um) {
+        not_confirmed_ = fmt::format(
+            "not added: {}. It is not confirmed at the tool point: the rms of the height of \"{}\" at {} "
+            "check "
+            "rows changes from {:.3g} um to {:.3g} um",
+            step.said, plane, from.checks, from.check_rms_um, to.check_rms_um);
+        record["check_rms_before_um"] = from.check_rms_um, record["check_rms_um"] = to.check_rms_um;
+      } else {
+        continue;
+      }
+      record["why_not"] = not_confirmed_;
+      refused_ = record;
+      fmt::print(out_, "{}\n", not_confirmed_);
+      return true;
+    }
+    return false;
+  }
+
+  /// Names of the planes that fit rows touched with an offset probe.
+  std::set<std::string> planes_of_probe() const {
+    std::set<std::string> planes;
+    for (std::size_t row = 0; row < all_rows_.rows(); ++row) {
+      const std::size_t thing = all_rows_.thing_of(row);
+      if (thing == model::kNoThing || all_rows_.check[row] != 0) continue;
+      const model::Thing& touched = all_rows_.things[thing];
+      if (touched.artefact.type != model::ArtefactType::kPlane) continue;
+      for (const char* const name : format::columns::kProbe)
+        if (const auto input = first_.find_input(name);
+            input && all_rows_.states.input[*input][static_cast<Eigen::Index>(row)] != 0)
+          planes.insert(touched.label);
+    }
+    return planes;
+  }
+
   void take(ModelStep model_step) {
     model_step.file = fmt::format("{}/{}{}.xml", arguments_.output, model_steps_.size(),
                                   model_step.effect.empty() ? "_model" : "_" + model_step.effect);
@@ -185,9 +242,14 @@ class Improver {
     model_steps_.push_back(std::move(model_step));
   }
 
+  std::string explanation() const {
+    const std::string last = last_["explanation"].get<std::string>();
+    return not_confirmed_.empty() ? last : last + " " + not_confirmed_ + ".";
+  }
+
   void finish() {
     Json json = {{"machine", first_.name},        {"files", arguments_.survey.measurements},
-                 {"verdict", last_["verdict"]},   {"explanation", last_["explanation"]},
+                 {"verdict", last_["verdict"]},   {"explanation", explanation()},
                  {"noise_um", last_["noise_um"]}, {"noise_urad", last_["noise_urad"]}};
     for (const std::string unit : {"_um", "_urad"}) {
       json["rms_before" + unit] = first_diagnosis_["rms" + unit];
@@ -196,6 +258,7 @@ class Improver {
       json["check_rms" + unit] = last_["check_rms" + unit];
     }
     json["candidates"] = first_diagnosis_["candidates"];
+    if (!refused_.is_null()) json["not_confirmed"] = refused_;
     json["next_measurement"] = last_["next_measurement"];
     for (const ModelStep& model_step : model_steps_) {
       Json step = {{"effect", model_step.effect.empty() ? Json(nullptr) : Json(model_step.effect)},
@@ -285,7 +348,8 @@ class Improver {
   model::Measurement rows_, all_rows_;
   std::vector<effects::Effect> effects_;
   std::vector<ModelStep> model_steps_;
-  Json first_diagnosis_, last_;
+  Json first_diagnosis_, last_, refused_;
+  std::string not_confirmed_;
 };
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include "tools/exchange/printer/correction.h"
 #include "tools/exchange/printer/firmware_files.h"
 #include "tools/kinematics/at.h"
+#include "tools/model/fit_record.h"
+#include "tools/model/measurement.h"
 #include "tools/text/error.h"
 
 namespace vernier::commands::exchange_cli {
@@ -18,6 +20,7 @@ using exchange::Firmware;
 struct PrinterArguments {
   ExchangeArguments common;
   std::string steps, bed;
+  std::vector<std::string> touches;
 };
 
 /// Word of --bed: the heights do not follow a bed.
@@ -32,6 +35,57 @@ exchange::PresentSetting present_of(const PrinterArguments& arguments) {
       throw text::InputError(fmt::format("--steps: '{}' must be three positive numbers", arguments.steps));
   present.steps = {numbers[0], numbers[1], numbers[2]};
   return present;
+}
+
+/// The shape of the bed in the touches of --touches.
+void read_shape(const PrinterArguments& arguments, const model::Machine& machine,
+                const exchange::ThreeAxes& axes, exchange::Bed& bed) {
+  exchange::give_shape(bed, machine, axes, model::read_measurement(arguments.touches, machine));
+}
+
+Json shape_json(const exchange::BedShape& shape) {
+  return {{"touches_of_probe", shape.by_probe},
+          {"touches_of_nozzle", shape.by_nozzle},
+          {"probe_offset_mm", shape.offset},
+          {"check_rows", shape.checks},
+          {"check_rms_um", shape.checks > 0 ? Json(shape.check_rms_um) : Json(nullptr)},
+          {"undetermined_um", shape.undetermined_um}};
+}
+
+void print_shape(std::FILE* out, const exchange::BedShape& shape) {
+  if (shape.by_probe == 0)
+    fmt::print(out, "the heights follow {} touches of the nozzle\n", shape.by_nozzle);
+  else if (shape.by_nozzle == 0)
+    fmt::print(
+        out,
+        "the heights follow {} touches of a probe at ({:g}, {:g}) mm beside the nozzle; no fit row touches "
+        "with the nozzle\n",
+        shape.by_probe, shape.offset[0], shape.offset[1]);
+  else
+    fmt::print(
+        out,
+        "the heights follow {} touches of a probe at ({:g}, {:g}) mm beside the nozzle, and the difference "
+        "between nozzle and probe at {} touches of the nozzle\n",
+        shape.by_probe, shape.offset[0], shape.offset[1], shape.by_nozzle);
+  if (shape.checks > 0)
+    fmt::print(out, "check rows with the nozzle: {}, rms of the height error {:.3g} um\n", shape.checks,
+               shape.check_rms_um);
+}
+
+/// Errors of the heights that the touches do not determine, or that the files do not contain.
+void add_left_out_of_bed(std::vector<exchange::LeftOut>& left, const exchange::Bed& bed,
+                         const model::Machine& machine) {
+  if (!bed.shape && machine.fitted->rms_mm * 1000 > exchange::kNothing_um)
+    left.push_back(
+        {"heights of the touches that the plane of the bed and the model do not contain, rms of the "
+         "last fit (with --touches FILE the heights contain them)",
+         machine.fitted->rms_mm * 1000});
+  if (bed.shape && bed.shape->undetermined_um > exchange::kNothing_um)
+    left.push_back(
+        {"height at the nozzle that touches of a probe alone do not determine: they do not distinguish "
+         "the shape of the bed from the straightness of a carriage (touch some points with the "
+         "nozzle)",
+         bed.shape->undetermined_um});
 }
 
 Json errors_json(const exchange::PrinterErrors& errors) {
@@ -54,24 +108,31 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   const model::States at = state_of(machine, common);
   require_safe(machine, common, true);
   const exchange::PrinterFeatures features = exchange::features_of(firmware, present);
-  const std::optional<exchange::Bed> bed = features.mesh && arguments.bed != kNoBed
-                                               ? exchange::bed_of(machine, axes, arguments.bed)
-                                               : std::nullopt;
+  std::optional<exchange::Bed> bed = features.mesh && arguments.bed != kNoBed
+                                         ? exchange::bed_of(machine, axes, arguments.bed)
+                                         : std::nullopt;
+  if (!arguments.touches.empty() && !bed)
+    throw text::InputError(
+        "--touches: the last fit of this machine has no plane that was touched, or --bed is none");
+  if (!arguments.touches.empty()) read_shape(arguments, machine, axes, *bed);
   exchange::PrinterCorrection correction =
       exchange::printer_correction(machine, axes, features, at, common.tolerance_um, bed);
   const std::vector<exchange::ConfigurationFile> texts =
       exchange::firmware_files(firmware, present, machine.name, correction);
   const exchange::PrinterErrors errors = exchange::printer_errors(machine, axes, correction, at, bed);
   const Json files = write_folder(common, texts);
+  if (bed && bed->shape) print_shape(human_stream(common.json), *bed->shape);
   if (bed)
     fmt::print(human_stream(common.json),
-               "the heights follow the plane \"{}\", X {:g} to {:g} mm, Y {:g} to {:g} mm\n", bed->name,
-               bed->low[0], bed->high[0], bed->low[1], bed->high[1]);
+               "the heights follow the {} \"{}\", X {:g} to {:g} mm, Y {:g} to {:g} mm\n",
+               bed->shape ? "bed" : "plane", bed->name, bed->low[0], bed->high[0], bed->low[1], bed->high[1]);
   print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);
   Json extra = errors_json(errors);
   std::vector<exchange::LeftOut> left = remaining(errors.after_um);
   if (bed) {
     extra["bed"] = bed->name;
+    if (bed->shape) extra["bed_shape"] = shape_json(*bed->shape);
+    add_left_out_of_bed(left, *bed, machine);
     extra["errors"]["beyond_bed_um"] = errors.beyond_bed_um;
     if (errors.beyond_bed_um > errors.after_um[2] + exchange::kNothing_um)
       left.push_back({"error along Z that remains with the files outside the touched region of the bed",
@@ -98,6 +159,13 @@ void add_printer(CLI::App* parent, const char* name, const char* what, const cha
             "plane whose slope the heights follow: an <artefact> that the last fit touched, or none; "
             "default: the only touched plane")
         ->type_name("NAME");
+  if (firmware != Firmware::kGrbl)
+    command
+        ->add_option(
+            "--touches", arguments->touches,
+            "measurement files with touches of the bed: the heights contain the shape of the bed, at the "
+            "nozzle also where an offset probe touched; may be repeated")
+        ->type_name(kReads);
   command->footer(
       "The command writes the corrections of squareness, heights and steps per mm that the firmware "
       "supports, and prints the\n"

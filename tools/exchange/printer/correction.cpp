@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "tools/format/columns.h"
 #include "tools/kinematics/correction.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain/chain.h"
@@ -142,6 +143,7 @@ ThreeAxes over_bed(ThreeAxes axes, const std::optional<Bed>& bed) {
 }  // namespace
 
 double Bed::height(double x, double y) const {
+  if (shape) return shape->height(x, y);
   return place_mm.z() - (normal.x() * (x - place_mm.x()) + normal.y() * (y - place_mm.y())) / normal.z();
 }
 
@@ -177,13 +179,28 @@ std::optional<Bed> bed_of(const model::Machine& machine, const ThreeAxes& axes, 
                            "this plane is nearly vertical: it cannot be the bed");
   for (std::size_t i = 0; i < 2; ++i) {
     bed.low[i] = axes.low[i], bed.high[i] = axes.high[i];
+    double probe = 0;  // the probe touched beside the position of the axes
+    for (const model::FitRecord::Range& range : machine.fitted->measured)
+      if (range.name == format::columns::kProbe[i] && range.min == range.max) probe = range.min;
     for (const model::FitRecord::Range& range : machine.fitted->measured)
       if (range.name == kLetters[i] && range.max > range.min) {
-        bed.low[i] = std::max(bed.low[i], range.min);
-        bed.high[i] = std::min(bed.high[i], range.max);
+        bed.low[i] = std::max(bed.low[i], range.min + probe);
+        bed.high[i] = std::min(bed.high[i], range.max + probe);
       }
   }
   return bed;
+}
+
+void give_shape(Bed& bed, const model::Machine& machine, const ThreeAxes& axes,
+                const model::Measurement& rows) {
+  bed.shape.emplace(bed_touches(machine, rows, bed.name));
+  for (std::size_t i = 0; i < 2; ++i) {
+    bed.low[i] = std::max(axes.low[i], bed.shape->low[i]);
+    bed.high[i] = std::min(axes.high[i], bed.shape->high[i]);
+    if (!(bed.high[i] > bed.low[i]))
+      throw text::InputError({machine.file, 0}, bed.name,
+                             "the touched points are outside the range of the axes, or on one line");
+  }
 }
 
 double HeightMesh::at(double x, double y) const {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/exchange/printer/bed_shape.h"
 #include "tools/exchange/three_axes.h"
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
@@ -50,6 +51,9 @@ struct Bed {
   /// Range of X and Y in which the bed was touched and the machine works, mm
   std::array<double, 2> low{}, high{};
 
+  /// Shape of the bed from its touches; no value: the bed is the plane
+  std::optional<BedShape> shape{};
+
   /// Returns the height of the bed at x and y of workpiece coordinates, mm.
   double height(double x, double y) const;
 };
@@ -58,6 +62,11 @@ struct Bed {
 /// touched plane is returned; nullopt if the record contains no plane. Throws InputError if no plane has this
 /// name, if there are several planes and no name, or if the plane is nearly vertical.
 std::optional<Bed> bed_of(const model::Machine& machine, const ThreeAxes& axes, const std::string& name);
+
+/// Gives the bed the shape of its touches `rows`. The mesh then covers the region of the touched points.
+/// Throws InputError if the fit rows have fewer than three touches of this bed.
+void give_shape(Bed& bed, const model::Machine& machine, const ThreeAxes& axes,
+                const model::Measurement& rows);
 
 /// Returns the correction of a machine. Skew and steps are fitted by least squares over the working volume;
 /// the heights are computed at the lowest position of Z. The number of mesh points is the smallest number at

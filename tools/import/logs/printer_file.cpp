@@ -83,7 +83,7 @@ std::map<std::string, Section> sections_of(const std::string& text) {
     } else if (section != nullptr && !indented && sign != std::string::npos) {
       setting = &(*section)[text::in_small_letters(text::trimmed(line.substr(0, sign)))];
       *setting = {text::trimmed(line.substr(sign + 1)), {}, number};
-    } else if (setting != nullptr && indented) {
+    } else if (setting != nullptr && (indented || sign == std::string::npos)) {  // parts_of() trims
       setting->more.emplace_back(line, number);
     }
   }
@@ -221,6 +221,45 @@ std::array<double, 2> offset_in(const std::map<std::string, Section>& sections, 
             "(0,0 if the nozzle itself touches)");
   return offset;
 }
+
+// ---- Klipper: compensation of the axis twist
+
+/// Heights that klippy/extras/axis_twist_compensation.py adds to the touches of the probe, over X.
+class AxisTwist {
+ public:
+  AxisTwist(const std::map<std::string, Section>& sections, const std::string& file) {
+    const auto section = sections.find("axis_twist_compensation");
+    if (section == sections.end()) return;
+    const auto values = section->second.find("z_compensations");
+    if (values == section->second.end()) return;
+    // Older versions have the range under the names of the calibration.
+    const auto range = [&](std::initializer_list<const char*> names) {
+      for (const char* const name : names)
+        if (const auto found = section->second.find(name); found != section->second.end())
+          return number_in({file, found->second.line}, found->second.value);
+      throw text::InputError({file, values->second.line}, *names.begin(),
+                             "the section [axis_twist_compensation] with z_compensations lacks this setting");
+    };
+    add_ = numbers_in({file, values->second.line}, values->second.value);
+    low_ = range({"compensation_start_x", "calibrate_start_x", "start_x"});
+    high_ = range({"compensation_end_x", "calibrate_end_x", "end_x"});
+    if (add_.size() < 2 || !(high_ > low_))
+      throw text::InputError({file, values->second.line}, "z_compensations",
+                             "the compensation needs two values or more, and a range of X that rises");
+  }
+  explicit operator bool() const { return !add_.empty(); }
+  /// The first and the last interval continue beyond their ends, as in Klipper.
+  double at(double x) const {
+    const double share = (x - low_) / (high_ - low_) * static_cast<double>(add_.size() - 1);
+    const double first = std::clamp(std::floor(share), 0.0, static_cast<double>(add_.size() - 2));
+    const auto i = static_cast<std::size_t>(first);
+    return add_[i] + (share - first) * (add_[i + 1] - add_[i]);
+  }
+
+ private:
+  std::vector<double> add_;
+  double low_ = 0, high_ = 0;
+};
 
 // ---- RepRapFirmware: height map
 
@@ -452,18 +491,15 @@ class ProbeLog {
   void take_offset(const std::string& text) {
     const bool of_probe =
         std::any_of(touches_.begin(), touches_.end(), [](const Touch& one) { return one.of_probe; });
-    if (!of_probe && options_.offset_mm)
-      throw text::InputError({file_, 0}, "--offset",
-                             "this log has positions of the nozzle (\"probe at\"), to which no offset "
-                             "applies: omit --offset");
     result_.offset_mm = {};
-    if (!of_probe) return;
     if (options_.offset_mm) {
       result_.offset_mm = *options_.offset_mm;
     } else {
       const auto sections = sections_of(text);
-      result_.offset_mm = offset_in(sections, file_);
-      if (!configures_probe(sections)) refuse_without_offset(file_);
+      const bool known = configures_probe(sections);
+      if (of_probe || known) result_.offset_mm = offset_in(sections, file_);
+      if (of_probe && !known) refuse_without_offset(file_);
+      result_.offset_known = known;
     }
     for (Touch& one : touches_)
       for (std::size_t k = 0; one.of_probe && k < 2; ++k) one.axes[k] -= result_.offset_mm[k];
@@ -506,7 +542,7 @@ class ProbeLog {
 // ---- the table
 
 ImportTable table_of(const std::string& file, const std::vector<Touch>& touches,
-                     const PrinterOptions& options) {
+                     const std::array<double, 2>& probe, const PrinterOptions& options) {
   ImportTable table;
   table.file = file;
   const auto add = [&](const std::string& name, const std::string& unit, const auto& value_of) {
@@ -517,6 +553,9 @@ ImportTable table_of(const std::string& file, const std::vector<Touch>& touches,
   for (const Touch& touch : touches) table.line.push_back(touch.line);
   const char* const names[] = {"X", "Y", "Z"};
   for (std::size_t k = 0; k < 3; ++k) add(names[k], "mm", [&](const Touch& touch) { return touch.axes[k]; });
+  if (probe[0] != 0 || probe[1] != 0)
+    for (std::size_t k = 0; k < 2; ++k)
+      add(format::columns::kProbe[k], "mm", [&](const Touch&) { return probe[k]; });
   table.columns.push_back(
       {format::columns::kOn, "", std::vector<std::string>(touches.size(), options.artefact)});
   if (options.u_um) add(format::columns::kUncertainty, "um", [&](const Touch&) { return *options.u_um; });
@@ -527,6 +566,15 @@ ImportTable table_of(const std::string& file, const std::vector<Touch>& touches,
     if (all([&, key = name](const Touch& touch) { return touch.temperature.contains(key); }))
       add("T_" + name, "degC", [&, key = name](const Touch& touch) { return touch.temperature.at(key); });
   return table;
+}
+
+/// Touches of the probe as touches of the nozzle at the touched points.
+void take_as_nozzle(std::vector<Touch>& touches, const AxisTwist& twist, const PrinterOptions& options,
+                    const std::array<double, 2>& offset) {
+  for (Touch& touch : touches) {
+    for (std::size_t k = 0; k < 2; ++k) touch.axes[k] += offset[k];
+    if (options.twist == PrinterOptions::Twist::kAdd) touch.axes[2] += twist.at(touch.axes[0]);
+  }
 }
 
 }  // namespace
@@ -565,7 +613,19 @@ PrinterFile read_printer_file(const std::string& text, const std::string& file,
         {file, 0}, "touches",
         "the file has no touches: it is no configuration with a saved mesh (Klipper), no log with lines "
         "\"probe at X,Y is z=Z\" or \"Bed X: X Y: Y Z: Z\", and no heightmap.csv of RepRapFirmware");
-  result.table = table_of(file, touches, options);
+  std::array<double, 2> probe = result.offset_mm;
+  if (result.kind != PrinterFile::Kind::kHeightMap && options.twist != PrinterOptions::Twist::kIgnore) {
+    const AxisTwist twist(sections_of(text), file);
+    if (!twist && options.twist == PrinterOptions::Twist::kAdd)
+      throw text::InputError({file, 0}, "--twist",
+                             "the file has no z_compensations in a section [axis_twist_compensation]");
+    if (twist && (probe[0] != 0 || probe[1] != 0)) {
+      result.twist = true;
+      take_as_nozzle(touches, twist, options, probe);
+      probe = {};
+    }
+  }
+  result.table = table_of(file, touches, probe, options);
   return result;
 }
 

@@ -16,8 +16,15 @@ struct PrinterOptions {
                                                    // and Y; default: the value in the file
   std::optional<double> u_um;                      // standard uncertainty of a touch; no value: the table has
                                                    // no column u
-  std::optional<std::size_t> series;               // number of the survey in a log with several surveys, from
-                                                   // 1
+  /// How the compensation of an axis twist (Klipper, z_compensations) applies to the touches.
+  enum class Twist : std::uint8_t {
+    kIncluded,  // the heights include the compensation: they are heights of the nozzle
+    kAdd,       // the touches are older than the compensation: the import adds it
+    kIgnore     // the heights do not include the compensation, and the import does not add it
+  };
+  Twist twist = Twist::kIncluded;
+  std::optional<std::size_t> series;  // number of the survey in a log with several surveys, from
+                                      // 1
 };
 
 /// Touches on the bed of a 3D printer.
@@ -26,10 +33,12 @@ struct PrinterFile {
   Kind kind = Kind::kProbeLog;
   std::string name;                      // name of the saved mesh
   std::array<double, 2> offset_mm = {};  // probe offset that was used
+  bool twist = false;                    // the heights are those of the nozzle by z_compensations
+  bool offset_known = true;              // false: a log of nozzle positions without a probe offset
   std::size_t not_probed = 0;            // number of positions of a height map without a reading
   std::size_t left_out = 0;              // number of touches in a log that the printer discarded
-  ImportTable table;                     // columns X[mm], Y[mm], Z[mm], on, and if known u, t[s],
-                                         // temperatures
+  ImportTable table;                     // columns X[mm], Y[mm], Z[mm], on; probeX[mm] and probeY[mm] if the
+                                         // probe has an offset; if known u, t[s], temperatures
 };
 
 /// True if the bytes are a file of a printer by its first line or its marks: a height map, a saved mesh, or a
@@ -43,10 +52,13 @@ bool is_printer_file(const std::string& bytes);
 /// - a height map of RepRapFirmware (heightmap.csv, version 2).
 /// Meshes, height maps, Marlin's G30 and Klipper's newer line ("probe: at X,Y bed will contact at z=Z") state
 /// the point that the probe touched. The position of the axes is the probed point minus the probe offset. If
-/// neither the options nor a configuration in the file state the offset, throws InputError.
-/// Touches during levelling, and repeated touches at one position (PROBE_ACCURACY), are excluded. If a log
-/// has several surveys of the bed, the option `series` is necessary. If the file is not valid, throws
-/// InputError with file, line and word.
+/// neither the options nor a configuration in the file state the offset, throws InputError. The columns
+/// probeX and probeY have the offset. If the file has z_compensations of [axis_twist_compensation], the
+/// heights are those that the nozzle has at the touched point (PrinterOptions::twist): the position of the
+/// axes is then the touched point, and the table has no columns probeX and probeY. Touches during levelling,
+/// and repeated touches at one position (PROBE_ACCURACY), are excluded. If a log has several surveys of the
+/// bed, the option `series` is necessary. If the file is not valid, throws InputError with file, line and
+/// word.
 PrinterFile read_printer_file(const std::string& text, const std::string& file,
                               const PrinterOptions& options);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { axisStyle, chart, colours, legendStyle, tooltipStyle } from './chart.js';
 import { el } from './dom.js';
+import { legendEntries } from './legend.js';
 import { byKind } from './matrix.js';
 import { number } from './data.js';
 
@@ -222,7 +223,7 @@ export function curves(plotted) {
       return {
         height: 300,
         option: {
-          legend: { ...legendStyle(c), top: 0, right: 8 },
+          legend: { ...legendStyle(c), top: 0, right: 8, data: legendEntries(plotted) },
           tooltip: { ...tooltipStyle(c), trigger: 'axis', valueFormatter: (value) => number(value, 4) },
           grid: { left: 66, right: 20, top: 34, bottom: 48 },
           xAxis: {

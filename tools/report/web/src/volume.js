@@ -33,7 +33,8 @@ function layerOf(field, node, axis) {
   return index % field.counts[axis];
 }
 
-function drawAxes(pen, project, box, c) {
+/** The edges of the box. */
+function drawBox(pen, project, box, c) {
   const corner = (bits) => [0, 1, 2].map((k) => ((bits >> k) & 1 ? box.high[k] : box.low[k]));
   pen.strokeStyle = c.soft;
   pen.lineWidth = 0.6;
@@ -48,14 +49,23 @@ function drawAxes(pen, project, box, c) {
       pen.stroke();
     }
   }
+}
+
+/** Names and ends of the axes, after the arrows and on paper of their own: arrows must not cross them. */
+function drawLabels(pen, project, box, c) {
   pen.fillStyle = c.ink;
+  pen.strokeStyle = c.panel;
+  pen.lineWidth = 4;
+  pen.lineJoin = 'round';
   pen.font = '13px system-ui, sans-serif';
   ['x', 'y', 'z'].forEach((name, k) => {
     if (box.high[k] === box.low[k]) return;
     const end = box.low.slice();
     end[k] = box.high[k] + 0.09 * box.reach;
     const at = project(end);
-    pen.fillText(`${name} ${number(box.high[k], 5)} mm`, at[0] - 10, at[1] + 4);
+    const label = [`${name} ${number(box.high[k], 5)} mm`, at[0] - 10, at[1] + 4];
+    pen.strokeText(...label);
+    pen.fillText(...label);
   });
 }
 
@@ -140,7 +150,7 @@ export function volume(field) {
     const pen = canvas.getContext('2d');
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, size.width, size.height);
-    drawAxes(pen, project, box, c);
+    drawBox(pen, project, box, c);
     const longest = field.max_um > 0 ? (view.gain * 0.16 * box.reach) / field.max_um : 0;
     const keep = (v) => (view.only === 'all' ? v : v.map((one, k) => (k === Number(view.only) ? one : 0)));
     const nodes = shown().map((i) => ({
@@ -164,6 +174,7 @@ export function volume(field) {
         drawRing(pen, to, Math.hypot(edge[0] - to[0], edge[1] - to[1]), c.soft);
       }
     }
+    drawLabels(pen, project, box, c);
   }
   function turn(dx, dy) {
     view.turn += 0.008 * dx;

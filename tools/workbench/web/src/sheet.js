@@ -25,7 +25,7 @@ const withUnit = (one) => `${one.name}${one.unit ? `[${one.unit}]` : ''}`;
 
 /** What the table of columns and the preview say; all other options of the import have fields. */
 const kInTable = ['file', 'output', 'column', 'deviation', 'leave', 'sheet'];
-const kOfPreview = [...kInTable, 'separator', 'decimal', 'skip', 'header'];
+const kOfPreview = [...kInTable, 'separator', 'decimal', 'skip', 'header', 'machine'];
 
 /** What the program says of a spreadsheet, in the words of the table of columns. */
 function onPage(message) {
@@ -118,7 +118,10 @@ export async function importSheet(box, name, done) {
     guarded(error, async () => {
       const output = freeName(`${name.replace(/\.[^.]*$/, '')}_read`, '.csv');
       const options = kind === 'table' ? { ...ofSheet(), ...columns() } : ofPreview(preview);
-      await run({ command: `import ${kind}`, file: name, ...options, ...forms[kind].values(), output });
+      const values = forms[kind].values();
+      // The list of nominal positions has the axes of the machine.
+      const machine = values.nominal && store.machine ? { machine: store.machine } : {};
+      await run({ command: `import ${kind}`, file: name, ...options, ...values, ...machine, output });
       box.replaceChildren(
         panel(
           null,

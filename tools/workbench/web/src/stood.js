@@ -21,6 +21,22 @@ const value = (input) => input.value.trim().replace(',', '.');
 export function stoodPanel(choose) {
   const room = el('div', { id: 'stood-room' }),
     error = el('div', {});
+  /** A new machine file with the touched object of the refusal: NAME:TYPE. */
+  const declare = () => {
+    const [, name, type] = store.refusal.match(/name="([^"]+)" type="([^"]+)"/) ?? [null, 'bed', 'plane'];
+    const field = el('input', { type: 'text', id: 'declare-artefact', value: `${name}:${type}`, 'aria-label': 'artefact', size: '14' });
+    const add = button(
+      'Declare it',
+      () =>
+        guarded(error, async () => {
+          const output = freeName(`${store.machine.replace(/\.[^.]*$/, '')}_touched`, '.xml');
+          await run({ command: 'set', machine: store.machine, artefact: [field.value.trim()], output });
+          await choose(output, store.measurements);
+        }),
+      { id: 'declare' },
+    );
+    return el('div', { class: 'controls' }, el('label', { class: 'choice' }, 'artefact (name:type) ', field), add);
+  };
   const draw = () => {
     const { file, columns } = asked(store.refusal);
     if (!store.refusal) return room.replaceChildren();
@@ -30,7 +46,7 @@ export function stoodPanel(choose) {
         panel(
           'These rows cannot be read',
           words,
-          /the machine file has no <artefact>/.test(store.refusal) ? el('p', {}, kDeclareBed) : null,
+          ...(/the machine file has no <artefact>/.test(store.refusal) ? [el('p', {}, kDeclareBed), error, declare()] : []),
         ),
       );
     const fields = columns.map((column) => [column, number(`stood-${column.replace(/\W.*/, '')}`, `${column} stood at`, '8')]);

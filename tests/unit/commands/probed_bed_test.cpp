@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The bed of a printer, touched with a probe beside the nozzle: what improve learns is not confirmed at the
+// nozzle.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+
+#include "tools/text/files.h"
+#include "tools/text/numbers.h"
+
+namespace vernier::probed_bed_test {
+
+using testing::HasSubstr;
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMachine = R"xml(<machine name="printer"><variables><static>
+  <twist value="0" nominal="0" unit="deg"/></static>
+  <machineaxes><X min="0" max="220"/><Y min="0" max="220"/><Z min="0" max="250"/></machineaxes>
+  <artefact name="bed" type="plane"/></variables>
+  <transforms branch="tool"><sixdof n="1" Y="Y" Z="Z" rY="twist*(Y-110)/220"/><sixdof n="2" X="X"/></transforms></machine>)xml";
+
+constexpr double kU_mm = 0.003;
+
+/// Survey of a bowed bed under a beam that turns about Y: 240 touches of a probe at (-30, 20) mm, every fifth
+/// a check row.
+std::string survey() {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> x(10, 180), y(25, 210);
+  std::normal_distribution<double> noise(0, kU_mm);
+  std::string text = "X[mm],Y[mm],Z[mm],probeX[mm],probeY[mm],on,u[mm],role\n";
+  for (int i = 0; i < 240; ++i) {
+    const double px = x(random), py = y(random), ax = px + 30, ay = py - 20;
+    const double bow = 0.15 * (1 - (px - 110) * (px - 110) / 12100);
+    const double z = bow + 0.0014 * (ay - 110) / 220 * px + noise(random);
+    for (const double value : {ax, ay, z}) text += text::number_text(std::round(value * 1e5) / 1e5) + ",";
+    text += i % 5 == 0 ? "-30,20,bed,0.003,check\n" : "-30,20,bed,0.003,fit\n";
+  }
+  return text;
+}
+
+struct ProbedBed : testing::Test {
+  ProbedBed() {
+    fs::create_directories(folder);
+    text::write_file(folder + "/p.xml", kMachine);
+    text::write_file(folder + "/bed.csv", survey());
+  }
+  ~ProbedBed() override { fs::remove_all(folder); }
+  int run(const std::string& command) {
+    text::write_file(folder + "/call.sh", command + "\n");
+    const int status = std::system(
+        ("cd '" + folder + "' && PATH=" VERNIER_BIN_DIR ":$PATH sh -e call.sh >said.txt 2>&1").c_str());
+    said = text::read_file(folder + "/said.txt");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  const std::string folder = testing::TempDir() + "probed_bed_" + std::to_string(getpid());
+  std::string said;
+};
+
+TEST_F(ProbedBed, ImproveAddsNoTermThatCheckRowsOfTheNozzleDoNotConfirm) {
+  ASSERT_EQ(run("vernier improve p.xml bed.csv -o out --yes"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("verdict: missing-effect"));  // the check rows of the probe confirm the term
+  EXPECT_THAT(said, HasSubstr("not added: "));
+  EXPECT_THAT(said, HasSubstr("no check row touches it with the tool point"));
+  const auto json = nlohmann::json::parse(text::read_file(folder + "/out/improve.json"));
+  EXPECT_EQ(json["ladder"].size(), 1U);  // the given machine
+  EXPECT_EQ(json["not_confirmed"]["check_rows"], 0);
+}
+
+TEST_F(ProbedBed, AnExistingMachineFileGetsAnArtefact) {
+  std::string text = kMachine;
+  const std::string bed = "  <artefact name=\"bed\" type=\"plane\"/>";
+  text.erase(text.find(bed), bed.size());
+  text::write_file(folder + "/none.xml", text);
+  ASSERT_EQ(run("vernier set none.xml --artefact bed:plane -o with.xml"), 0) << said;
+  EXPECT_THAT(text::read_file(folder + "/with.xml"), HasSubstr("<artefact name=\"bed\" type=\"plane\"/>"));
+  EXPECT_EQ(run("vernier fit with.xml bed.csv -o fit.xml"), 0) << said;
+  EXPECT_EQ(run("vernier set with.xml --artefact bed:plane -o again.xml"), 1) << said;
+  EXPECT_EQ(run("vernier set none.xml --artefact bed:blob -o again.xml"), 1) << said;
+  EXPECT_EQ(run("vernier set none.xml -o again.xml"), 1) << said;
+}
+
+TEST_F(ProbedBed, ExportStatesTheHeightsThatTheProbeDoesNotDetermine) {
+  ASSERT_EQ(run("vernier fit p.xml bed.csv -o fit.xml"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("the machine file has the inputs probeX and probeY"));
+  const std::string call =
+      "vernier export klipper fit.xml -o out --accept measured-range --accept disturbed --accept uncertainty "
+      "--accept check-rows ";
+  ASSERT_EQ(run(call), 0) << said;
+  EXPECT_THAT(said, HasSubstr("--touches FILE"));
+  ASSERT_EQ(run(call + "--touches bed.csv --json out.json"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("do not distinguish the shape of the bed from the straightness of a carriage"));
+  const auto json = nlohmann::json::parse(text::read_file(folder + "/out.json"));
+  // At p + (-30, 20) the bow is up to 0.07 mm higher or lower than at p.
+  EXPECT_GT(json["bed_shape"]["undetermined_um"], 50);
+  EXPECT_EQ(json["bed_shape"]["touches_of_probe"], 192);
+}
+
+}  // namespace
+}  // namespace vernier::probed_bed_test
