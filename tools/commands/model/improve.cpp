@@ -196,16 +196,14 @@ class Improver {
       if (from.checks == 0) {
         not_confirmed_ = fmt::format(
             "not added: {}. The rows touch \"{}\" with a probe at ({:g}, {:g}) mm beside the tool point, and "
-            "no "
-            "check row touches it with the tool point. The term may be the shape of \"{}\" or an error at "
-            "the "
-            "probe alone. Touch some points with the tool point (rows with role check, probeX and probeY 0)",
+            "no check row touches it with the tool point. The term may be the shape of \"{}\" or an error at "
+            "the probe alone. Touch some points with the tool point (rows with role check, probeX and probeY "
+            "0)",
             step.said, plane, from.offset[0], from.offset[1], plane);
       } else if (to.check_rms_um > from.check_rms_um) {
         not_confirmed_ = fmt::format(
             "not added: {}. It is not confirmed at the tool point: the rms of the height of \"{}\" at {} "
-            "check "
-            "rows changes from {:.3g} um to {:.3g} um",
+            "check rows changes from {:.3g} um to {:.3g} um",
             step.said, plane, from.checks, from.check_rms_um, to.check_rms_um);
         record["check_rms_before_um"] = from.check_rms_um, record["check_rms_um"] = to.check_rms_um;
       } else {
