@@ -27,8 +27,9 @@ enum class Feature : std::uint8_t {
 };
 constexpr unsigned kFeatures = 13;
 
-/// Scale of the samples in a FeatureWindow. `lsb`: value of one LSB in 1e-6 of the signal's unit (10 for 10
-/// ug and a signal in g), 1..2^30. `rate`: sample rate in 1e-6 Hz, 1..2^42.
+/// Meaning of the integer samples of a FeatureWindow: size of one count, and sample rate. `lsb`: value of one
+/// LSB in 1e-6 of the signal's unit (10 for 10 ug and a signal in g), 1..2^30. `rate`: sample rate in 1e-6
+/// Hz, 1..2^42.
 struct FeatureScale {
   InputMicro lsb{10};
   InputMicro rate{1'000'000'000};

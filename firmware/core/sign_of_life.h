@@ -7,8 +7,7 @@
 namespace vernier {
 
 /// Determines when a watchdog may be triggered: four times a second, and only if the tick ran since the last
-/// trigger. A triggered watchdog proves only that the tick runs. A triggered watchdog does not prove that the
-/// thread of the caller runs.
+/// trigger. A trigger therefore shows that the tick runs, and not only that the thread of the caller runs.
 class SignOfLife {
  public:
   static constexpr InstantNs kPeriod{250'000'000};  // an eighth of the time WatchdogSec in the systemd unit

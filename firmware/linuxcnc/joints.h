@@ -17,11 +17,10 @@ namespace vernier {
 /// limits if the joint is never faster than the larger of max-velocity and its largest observed speed. If a
 /// connected pin (command, position or feedback) has a value that is not a number, the reading of the joint
 /// is missing. After a missing reading, the command to the drive and the feedback to the controller keep
-/// their values. If the command jumps to the feedback position, this does not count as a jump of the axis.
-/// After the jump of the command, the reading of the joint continues from the new command.
-/// (LinuxCNC makes such a jump for a joint that is disabled.) A joint that is not homed has no
-/// reference position. The reading of a joint without reference does not change. When the joint is
-/// homed, the reading continues from the new zero.
+/// their values. For a disabled joint LinuxCNC sets the command to the feedback position. This jump of the
+/// command is no fault: the position of the axis, from which the correction is computed, continues from the
+/// new command. A joint that is not homed has no reference position. The reading of a joint without reference
+/// does not change. When the joint is homed, the reading continues from the new zero.
 class Joints : public AxisReader, public CorrectionWriter {
  public:
   /// `pins`: must exist longer than this object. `mm_per_unit`: unit of lengths of the machine, mm. Not

@@ -82,8 +82,12 @@ ex nominal_slope(const model::Machine& machine, const ElementaryMotion& motion,
   try {
     slope = motion.value.diff(parameter.symbol).subs(no_errors, GiNaC::subs_options::no_pattern);
   } catch (const std::exception&) {
-    throw text::InputError({machine.file, transform.line}, transform.text[motion.dof],
-                           fmt::format("the error equation has no first-order term in {}", parameter.name));
+    throw text::InputError(
+        {machine.file, transform.line}, transform.text[motion.dof],
+        fmt::format(
+            "this term has no derivative with respect to {} at errors 0, so that the first-order error "
+            "equation does not exist",
+            parameter.name));
   }
   const std::string word = book.rough_word(slope);
   if (!word.empty())

@@ -165,7 +165,8 @@ class CatalogueReader {
       const std::string label = next_word(rest);
       const auto form = std::find_if(effect.forms.begin(), effect.forms.end(),
                                      [&](const EffectForm& f) { return f.label == label; });
-      if (form == effect.forms.end()) fail(label, "the effect has no form of this label before this line");
+      if (form == effect.forms.end())
+        fail(label, "no line \"form\" of this effect above this line has this label");
       form->rare = true;
     }
   }
@@ -208,7 +209,7 @@ class CatalogueReader {
         fail(rule.name, "a grid is \"grid LOW HIGH COUNT\" with 0 < LOW < HIGH and COUNT 2 to 1000");
       rule.count = static_cast<std::size_t>(count);
     } else {
-      fail(kind, "the kind of an unknown must be linear, time, travel, period or grid");
+      fail(kind, "the line \"unknown NAME UNIT KIND\" needs as KIND: linear, time, travel, period or grid");
     }
     if (!rest.empty()) fail(rest, "this line has more words than the keyword allows");
     effect.unknowns.push_back(rule);

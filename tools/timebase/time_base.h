@@ -68,14 +68,15 @@ struct TimeBaseOptions {
 /// a run: the residual of a later pass over the same poses with that of the earlier pass, block by block, at
 /// different lags in rows. Second comparison, between runs over the same path: their residuals along the
 /// path. Third comparison, for closed paths: the end of the path with its start. A time base error is found
-/// if the residuals agree at another lag than the positions. The agreement of the residuals must be
-/// significantly better than by chance, and better than at the lag of the positions. One of three conditions
-/// must also be met: the agreement occurs in at least two neighbouring blocks; or row by row between runs
-/// whose positions have another rate; or before the path closes. The probabilities of the last two cases are
-/// combined, because the last case alone is no proof. A residual gives no finding if it is zero, white,
-/// smooth or periodic, or if it really repeats (hysteresis, cyclic errors, drift). Poses that occur only
-/// once, and a second pass at another speed, give no information about the time base. `residual`: measured -
-/// model, one value per observation, mm. Only lengths are tested; rotations are not tested.
+/// if the residuals of two passes agree best at another shift in rows than the positions of the passes. The
+/// agreement of the residuals must be significantly better than by chance, and better than at the lag of the
+/// positions. One of three conditions must also be met: the agreement occurs in at least two neighbouring
+/// blocks; or row by row between runs whose positions have another rate; or before the path closes. The
+/// probabilities of the last two cases are combined, because the last case alone is no proof. A residual
+/// gives no finding if it is zero, white, smooth or periodic, or if it really repeats (hysteresis, cyclic
+/// errors, drift). Poses that occur only once, and a second pass at another speed, give no information about
+/// the time base. `residual`: measured - model, one value per observation, mm. Only lengths are tested;
+/// rotations are not tested.
 TimeBaseFinding examine_time_base(const model::Measurement& measurement, const Eigen::VectorXd& residual,
                                   const TimeBaseOptions& options = {});
 

@@ -39,7 +39,8 @@ class Link {
   static std::uint32_t answer_with(LinkStatus status, const std::uint8_t* request,
                                    std::uint8_t* reply) noexcept;
 
-  /// Sets the live registers for Modbus masters that use only registers. `values`: kLiveRegisters values. Not
+  /// Writes mode, positions, corrections and inputs into the registers of a Modbus master that does not use
+  /// the messages of the link. `values`: kLiveRegisters values. Not
   /// real-time safe.
   void fill_registers(std::uint16_t* values);
   /// Executes a command from a Modbus master that uses only registers. The command is refused if the number

@@ -189,7 +189,8 @@ TEST_F(FleetCommand, BatchIsWorkedOffAndCollectedOnce) {
   const std::string words =
       "vernier fleet batch night compare \"it's \\$HOME & more/{machine}.xml\" {machine}.csv";
   ASSERT_EQ(run(words), 0) << said();
-  EXPECT_NE(said().find("3 machines. Start: ./night/parallel.sh"), std::string::npos) << said();
+  EXPECT_NE(said().find("for 3 machines. Start the script: ./night/parallel.sh"), std::string::npos)
+      << said();
   EXPECT_EQ(run(words), 1) << "there is one";
   // WHEN the tasks run as the scheduler runs them
   EXPECT_EQ(run("vernier fleet task night a && vernier fleet task night b && vernier fleet task night b"), 0)

@@ -143,11 +143,14 @@ void run_batch(const CLI::App& vernier, const BatchArguments& arguments) {
   if (slurm) text::make_folder(folder + "/logs");
   const std::string file = folder + (slurm ? "/slurm.sh" : "/parallel.sh");
   write_script(file, script);
-  fmt::print("{} machines. Start: {}{}\nThen: vernier fleet collect {}\n", batch.machines.size(),
-             slurm                 ? "sbatch "
-             : file.front() == '/' ? ""
-                                   : "./",
-             quoted(file), quoted(folder));
+  fmt::print(
+      "The script runs the command for {} machines. Start the script: {}{}\nThen record the results: vernier "
+      "fleet collect {}\n",
+      batch.machines.size(),
+      slurm                 ? "sbatch "
+      : file.front() == '/' ? ""
+                            : "./",
+      quoted(file), quoted(folder));
 }
 
 struct TaskArguments {

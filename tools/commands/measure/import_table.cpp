@@ -161,7 +161,7 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
   if (arguments.preview) {
     print_rows(out, csv);
     write_json(arguments.json, result);
-    fmt::print(out, "preview of {} rows: no file is written\n", read.line.size());
+    fmt::print(out, "preview: the first of {} rows; no file is written\n", read.line.size());
     return;
   }
   if (arguments.output.empty())

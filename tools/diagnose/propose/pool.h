@@ -79,9 +79,9 @@ class Pool {
   /// True if the candidate `general` is richer than `special` and its columns contain the columns of
   /// `special` (all but 2 % of their squares).
   bool contains(std::size_t general, std::size_t special) const;
-  /// True if two candidates depend on the same kinds of quantities. For this comparison, positions, the row
-  /// number and the travel since a reversal are ignored. If two candidates also have equal columns, they are
-  /// two forms of one term.
+  /// True if two candidates depend on the same kinds of quantities. The function
+  /// same_kind() ignores positions, the row number and the travel since a reversal. If two candidates also
+  /// have equal columns, they are two forms of one term.
   bool same_kind(std::size_t a, std::size_t b) const;
   /// Returns the penalty of a candidate for the number of tested candidates (twice the logarithm of their
   /// number).

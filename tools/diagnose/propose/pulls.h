@@ -17,8 +17,8 @@ class Pulls {
 
   /// True if a form of an effect needs a gravity function along the chain.
   static bool asks(const effects::EffectForm& form);
-  /// True if a form with a gravity function is possible at the location `place`. For a bend, only variants()
-  /// tests the directions `toward`.
+  /// True if a form whose term contains a gravity function can act at the location `place`. For a bend, only
+  /// variants() tests the directions `toward`.
   bool admits(const effects::EffectForm& form, const effects::DofPlace& place) const;
   /// Returns copies of a choice with its location, one copy for every bar and every mass whose gravity
   /// function is different from the others.

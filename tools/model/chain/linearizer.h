@@ -14,7 +14,8 @@
 
 namespace vernier::model {
 
-/// A group of adjacent parameters with common weights. The parameters are the free columns of a table (one
+/// Adjacent parameters whose derivatives are one common factor (weight) times successive rows of
+/// RowLinear::gradient. The parameters are the free columns of a table (one
 /// weight for each station that contributes at a row), statics, or the components of a BaseShift or a
 /// ToolShift (weight 1).
 struct ParameterGroup {
