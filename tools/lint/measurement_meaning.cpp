@@ -136,8 +136,8 @@ class Meaning {
       if (turns && close(180 / std::acos(-1.0))) meaning = "rad read as deg?";
       findings_.add(meaning.empty() ? LintWeight::kRemark : LintWeight::kWarning, table_.header_line,
                     column.name,
-                    fmt::format("this column covers only {:.3g} of the travel of {:.4g} {}", most - least,
-                                travel, unit),
+                    fmt::format("this column covers only {:.3g} {} of the travel of {:.4g} {}", most - least,
+                                unit, travel, unit),
                     meaning);
     }
   }

@@ -5,8 +5,11 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
+#include <fmt/format.h>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <random>
 #include <sstream>
 
 #include "tools/text/files.h"
@@ -288,6 +291,54 @@ TEST_F(Manners, LintExitsByWhetherTheFilesAreOfUse) {
   EXPECT_EQ(run("vernier lint m.xml rows.csv"), 0) << said_;
   EXPECT_EQ(run("vernier lint m.xml sheet.csv --json lint.json"), 1) << said_;
   EXPECT_NE(read_file(folder_ + "/lint.json").find("\"weight\": \"error\""), std::string::npos);
+}
+
+/// Even targets do not distinguish the periods of a cyclic error; the backlash is certain.
+TEST_F(Manners, ImproveAddsTheCertainEffectBeforeAnAmbiguousPeriod) {
+  write_file(
+      folder_ + "/axis.xml",
+      "<machine name=\"axis\"><variables><static><c value=\"0\" unit=\"mm\"/></static><machineaxes>"
+      "<X rotary=\"false\" min=\"0\" max=\"500\"/></machineaxes></variables><transforms branch=\"tool\">"
+      "<sixdof n=\"1\" X=\"X+c\"/></transforms></machine>");
+  std::mt19937_64 random(20261128);
+  std::normal_distribution<double> noise(0, 0.8);
+  std::string rows = "X[mm],x[mm],dirX,u[um],run,role\n";
+  for (int run = 0; run < 5; ++run)
+    for (const int sense : {1, -1})
+      for (int k = 0; k <= 20; ++k) {
+        const double x = 25 * (sense > 0 ? k : 20 - k);
+        const double error_um =
+            4.5 * sense + 3 * std::sin(2 * 3.14159265358979 * x / 63 + 0.4) + noise(random);
+        rows += fmt::format("{},{:.6f},{},0.8,r{},{}\n", x, x + 1e-3 * error_um, sense, run,
+                            run < 4 ? "fit" : "check");
+      }
+  write_file(folder_ + "/axis.csv", rows);
+  ASSERT_EQ(run("vernier improve axis.xml axis.csv -o better --yes"), 0) << said_;
+  EXPECT_TRUE(said("verdict: ambiguous") && said("+ X carriage: backlash") && said("no effect is added"))
+      << said_;
+  EXPECT_FALSE(said("+ X carriage: cyclic error: rms")) << said_;
+}
+
+TEST_F(Manners, CorrectWritesNothingBeyondMaxcorrection) {
+  const auto machine = [](const char* most) {
+    return std::string(
+               "<machine name=\"m\"><variables><machineaxes><X rotary=\"false\" min=\"0\" max=\"300\" "
+               "maxcorrection=\"") +
+           most +
+           "\"/></machineaxes></variables><transforms branch=\"tool\"><sixdof n=\"1\" "
+           "X=\"X+1e-3*X\"/></transforms></machine>";
+  };
+  write_file(folder_ + "/far.xml", machine("0.25"));
+  write_file(folder_ + "/near.xml", machine("0.35"));
+  write_file(folder_ + "/list.csv", "X[mm]\n0\n300\n");
+  EXPECT_EQ(run("vernier correct far.xml list.csv -o far.csv"), 2);
+  EXPECT_TRUE(said(
+      "the correction of X is up to 0.2997 mm, and its maxcorrection in the machine file permits 0.25 mm"))
+      << said_;
+  EXPECT_FALSE(fs::exists(folder_ + "/far.csv"));
+  EXPECT_EQ(run("vernier correct near.xml list.csv -o near.csv"), 0) << said_;
+  // Backwards nothing moves.
+  EXPECT_EQ(run("vernier correct far.xml near.csv --back -o back.csv"), 0) << said_;
 }
 
 TEST_F(Manners, ShellCompletesCommandsKindsOptionsAndFiles) {

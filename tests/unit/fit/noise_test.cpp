@@ -170,6 +170,19 @@ TEST(NoiseModel, IsFoundAgain) {
   EXPECT_NEAR(twice.own, 2, 0.2);
 }
 
+/// A slow scatter below u is no drift of the instrument, however long the drift that would describe it.
+TEST(NoiseModel, SlowScatterBelowTheStatedUncertaintyIsNoDrift) {
+  std::mt19937_64 random(kSeed);
+  const Measurement m = survey(90, 1, 1, random);
+  const NoiseLayout layout = noise_layout(m, all_of(m));
+  Eigen::VectorXd residual(90);
+  for (Eigen::Index i = 0; i < 90; ++i) residual[i] = 0.5 * std::sin(4e-2 * static_cast<double>(i));
+  const NoiseModel found = estimate_noise(layout, residual, Eigen::MatrixXd(90, 0), true);
+  EXPECT_EQ(found.drift, 0);
+  EXPECT_GE(found.own, 1);
+  EXPECT_GT(estimate_noise(layout, 4 * residual, Eigen::MatrixXd(90, 0), true).drift, 0);
+}
+
 // Moves take between a second and minutes; what goes from one reading to the next does not ask how long.
 TEST(NoiseModel, DriftGoesByRowsWhereTimeDoesNotTellIt) {
   std::mt19937_64 random(kSeed);

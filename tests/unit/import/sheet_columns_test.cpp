@@ -89,6 +89,8 @@ const Case kCases[] = {
      "X[mm],x[mm]\n1,-0.5\n"},
     {"TargetAndActual", "X soll [mm];X ist [mm]\n1;1,5\n", "X[mm],x[mm]\n1,1.5\n"},
     {"TargetAndDeviation", "X target (mm);Deviation (µm)\n100;-1.5\n", "X[mm],x[mm]\n100,99.9985\n"},
+    {"SensesOfTwoAxes", "X[mm];Y[mm];x[mm];Richtung X;Richtung Y\n1;5;1;+;-\n2;6;2;-;+\n",
+     "X[mm],Y[mm],x[mm],dirX,dirY\n1,5,1,1,-1\n2,6,2,-1,1\n"},
     {"SensesInWords", "X[mm];x[mm];Richtung;Lauf\n1;2;hin;1\n1;2;zurück;1\n",
      "X[mm],x[mm],dirX,run\n1,2,1,1\n1,2,-1,1\n"},
     {"SensesCountedOneAndNought", "X[mm];x[mm];Direction\n1;2;1\n1;2;0\n",

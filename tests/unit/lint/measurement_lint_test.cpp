@@ -110,7 +110,7 @@ const Case kCases[] = {
     {"Deviations", "X[mm],Y[mm],Z[mm],x[mm]\n0,0,-300,0.001\n600,400,0,0.004\n300,100,-9,0.002\n",
      "deviations instead of positions?"},
     {"InchesInAMillimetreColumn", "X[mm],Y[mm],Z[mm],x[mm]\n0,0,-11,0\n23.6,15,0,599.44\n11,4,-5,279.4\n",
-     "this column covers only 23.6 of the travel of 600 mm -- inch read as mm?"},
+     "this column covers only 23.6 mm of the travel of 600 mm -- inch read as mm?"},
     {"DirectionNotOne", kHead + "0,0,-300,2,0,1,20,0,0,-300,a,fit\n" + kRow2,
      "\"2\": a direction is 1, -1 or 0"},
     {"RoleMistyped", kHead + kRow1 + "300,200,-100,1,0,2,21,300,200,-100,a,chek\n",

@@ -163,12 +163,13 @@ class Improver {
     }
     fmt::print(out_, "verdict: {}. {}\n", diagnose::verdict_name(d.verdict), d.explanation);
     for (const std::string& next : d.next_measurement) fmt::print(out_, "measure next: {}\n", next);
-    if (d.verdict == diagnose::Verdict::kAmbiguous)
+    const std::size_t certain = certain_steps(d);
+    if (d.verdict == diagnose::Verdict::kAmbiguous && certain == 0)
       fmt::print(out_,
                  "no effect is added: measure the proposed poses and give all files to improve; or add one "
                  "cause with vernier add\n");
-    if (d.verdict != diagnose::Verdict::kMissingEffect) return false;
-    for (std::size_t i = 1; i < d.ladder.size(); ++i) {
+    if (certain == 0) return false;
+    for (std::size_t i = 1; i <= certain; ++i) {
       const diagnose::LadderStep& step = d.ladder[i];
       if (not_confirmed_at_tool_point(step)) return false;
       if (!agreed(arguments_, step, out_)) return false;
@@ -180,6 +181,23 @@ class Improver {
     machine_ = model::parse_machine(text_, arguments_.survey.machine);
     rows_ = model::rebind(rows_, before, machine_);
     return true;
+  }
+
+  /// Returns the number of steps that no other cause explains. If the verdict is ambiguous because of other
+  /// periods of a later step, the steps before it are certain.
+  static std::size_t certain_steps(const diagnose::Diagnosis& d) {
+    if (d.verdict == diagnose::Verdict::kMissingEffect) return d.ladder.size() - 1;
+    if (d.verdict != diagnose::Verdict::kAmbiguous || d.causes.size() > 1) return 0;
+    std::size_t certain = 0;
+    while (certain + 1 < d.ladder.size()) {
+      const diagnose::LadderStep& step = d.ladder[certain + 1];
+      const auto found = std::find_if(d.candidates.begin(), d.candidates.end(), [&](const auto& candidate) {
+        return candidate.accepted && candidate.add == step.add;
+      });
+      if (!step.confirmed.value_or(false) || found == d.candidates.end() || !found->aliases.empty()) break;
+      ++certain;
+    }
+    return certain;
   }
 
   /// A step that was learned from touches of an offset probe: true, with a sentence, if check rows that touch

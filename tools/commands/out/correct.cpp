@@ -13,6 +13,7 @@
 #include "tools/kinematics/inverse.h"
 #include "tools/offline/part_program.h"
 #include "tools/offline/positions.h"
+#include "tools/safety/safety_sheet.h"
 #include "tools/text/assurance.h"
 #include "tools/text/error.h"
 #include "tools/text/optional_json.h"
@@ -74,6 +75,29 @@ std::string largest_corrections(const offline::CorrectionSummary& summary, const
   return with_rotary && summary.largest_deg(machine) > 0 ? um + " and " + deg : um;
 }
 
+/// A correction beyond maxcorrection would move the machine further than its user permits.
+void require_within_limits(const model::Machine& machine, const offline::CorrectionSummary& summary) {
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const model::Axis& axis = machine.axes[i];
+    if (!axis.max_correction || summary.largest[i] <= *axis.max_correction) continue;
+    const char* const unit = axis.rotary ? "deg" : "mm";
+    throw text::LimitNotMet(fmt::format(
+        "the correction of {} is up to {:.4g} {}, and its maxcorrection in the machine file permits "
+        "{:g} {}: no file is written",
+        axis.name, summary.largest[i], unit, *axis.max_correction, unit));
+  }
+}
+
+/// The safety sheet says how far a fitted machine file can be trusted. Without the ranges of all axes there
+/// is no sheet.
+void note_what_is_not_safe(const model::Machine& machine) {
+  const bool bounded = std::all_of(machine.axes.begin(), machine.axes.end(),
+                                   [](const model::Axis& axis) { return axis.min && axis.max; });
+  if (!machine.fitted || !bounded) return;
+  const safety::SafetySheet sheet = safety::safety_sheet(machine);
+  if (!sheet.ok()) fmt::print(stderr, "note: {}\n", sheet.refusal());
+}
+
 void run_correct(const CorrectArguments& arguments) {
   const model::Machine read = read_model(arguments.machine);
   const model::Machine machine = arguments.tool.empty() ? read : kinematics::tooled(read, arguments.tool);
@@ -128,6 +152,10 @@ void run_correct(const CorrectArguments& arguments) {
         fmt::format("the blocks deviate from the corrected path by {:.4g} um, --deviation permits {} um; no "
                     "file is written",
                     *path_um, arguments.deviation_um));
+  if (!arguments.back) {
+    require_within_limits(machine, summary);
+    note_what_is_not_safe(machine);
+  }
   text::write_file(arguments.output, result);
   write_json(arguments.json, json);
   std::FILE* out = human_stream(arguments.json);
@@ -187,7 +215,9 @@ void register_correct(CLI::App& vernier) {
       "conversion. Exit status\n"
       "0 done, 1 bad input (nothing written), 2 a position cannot be corrected with these axes, a target "
       "cannot\n"
-      "be reached, or the blocks of a program deviate from the corrected path by more than --deviation.");
+      "be reached, a correction exceeds the maxcorrection of its axis, or the blocks of a program deviate "
+      "from\n"
+      "the corrected path by more than --deviation.");
   command->callback([arguments] { run_correct(*arguments); });
 }
 

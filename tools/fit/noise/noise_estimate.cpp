@@ -307,7 +307,9 @@ std::optional<NoiseModel> estimate_beside(const NoiseLayout& layout, const Eigen
   if (!with_u) return free.own < limits.least_own_part * free.shared() ? std::nullopt : std::optional(free);
   if (free.log_likelihood == 0) return free;  // too few readings, or no residual
   if (free.independent()) return white_noise(layout, residual, fitted, 1, limits);
-  if (free.total() < limits.near_u) return estimate_components(layout, residual, fitted, 1, limits);
+  // A drift that is longer than the record can be large and leave a small scatter.
+  const double seen = std::min(free.total(), white_noise(layout, residual, fitted, 0, limits).own);
+  if (seen < limits.near_u) return estimate_components(layout, residual, fitted, 1, limits);
   const double scale = std::max(1.0, 1 / free.total());
   for (double* part : {&free.own, &free.pose, &free.run, &free.drift}) *part *= scale;
   return free;

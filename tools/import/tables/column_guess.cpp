@@ -162,6 +162,14 @@ SheetColumn Guess::column(const sheet::Heading& heading) const {
     column.name = axis;
     return column;
   }
+  if (!axis.empty() && words.size() == 2) {
+    sheet::Heading rest = heading;
+    rest.name = words[0] == axis ? words[1] : words[0];
+    if (other(rest) == kSenseOfAxis) {
+      column.name = kSenseOfAxis + axis;
+      return column;
+    }
+  }
   if (std::string missing = direction_missing(heading); !missing.empty())
     return {SheetColumn::Use::kLeft, heading.name, heading.unit, std::move(missing)};
   column.name = other(heading);

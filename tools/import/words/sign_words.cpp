@@ -27,10 +27,19 @@ const WordSet kBesideOperand = {
 const WordSet kComparisons = {"vergleich", "comparison", "compare", "tabelle",  "table",     "protokoll",
                               "report",    "bericht",    "messung", "liste",    "list",      "daten",
                               "data",      "analyse",    "werte",   "analysis", "vergleiche"};
-const WordSet kMinusWords = {"minus", "less", "weniger", "abzüglich", "abzueglich"};
+const WordSet kMinusWords = {"minus", "less", "weniger", "abzüglich", "abzueglich", "abzgl", "abzügl"};
 const WordSet kTowards = {"zu", "to", "gegen", "gegenüber", "vs", "versus", "bis"};
 
-enum class SignKind { kWord, kMinus, kEquals, kColon, kOpen, kClose, kBreak };
+enum class SignKind {
+  kWord,
+  kMinus,
+  kEquals,
+  kColon,
+  kOpen,
+  kClose,
+  kBreak,
+  kSlash
+};  // from kBreak on: a part of the text ends
 
 struct SignToken {
   SignKind kind = SignKind::kWord;
@@ -110,6 +119,12 @@ class SignTokens {
   std::size_t take(const std::string& text, std::size_t at) {
     static constexpr std::array<std::string_view, 9> kDashes = {
         "-", "\u2212", "\u2010", "\u2011", "\u2012", "\u2013", "\u2014", "\u2015", "\uff0d"};
+    // "./." is the commercial minus.
+    if (text.compare(at, 3, "./.") == 0) {
+      flush();
+      list_.push_back({SignKind::kMinus, "", true, false, false});
+      return 3;
+    }
     for (const std::string_view arrow : {std::string_view("->"), std::string_view("\u2192")})
       if (text.compare(at, arrow.size(), arrow) == 0) {
         flush();
@@ -141,7 +156,7 @@ class SignTokens {
     else if (kCloses.find(c) != std::string::npos)
       sign(SignKind::kClose);
     else if (kBreaks.find(c) != std::string::npos)
-      sign(SignKind::kBreak);
+      sign(c == '/' ? SignKind::kSlash : SignKind::kBreak);
     else if (c == '=' || c == ':')
       sign(c == '=' ? SignKind::kEquals : SignKind::kColon);
     else
@@ -240,7 +255,7 @@ class Difference {
     negated_ = opened && at > 1 && list_[at - 2].kind == SignKind::kMinus &&
                (at == 2 || list_[at - 3].kind != SignKind::kWord);  // "1- (Soll-Ist)" is a run backward
     bool correction = false, state = false;
-    for (std::size_t k = at; k-- > 0 && list_[k].kind != SignKind::kBreak;) {
+    for (std::size_t k = at; k-- > 0 && list_[k].kind < SignKind::kBreak;) {
       const std::string& word = list_[k].word;
       if (list_[k].kind != SignKind::kWord) continue;
       of_deviation_ |= says_deviation_or_sign(word);
@@ -292,13 +307,14 @@ class Difference {
   mutable bool compound_ = false;
 };
 
-/// "Abweichung Soll zu Ist" names an order, but no sign.
+/// "Abweichung Soll zu Ist" and "Abw. Soll/Ist" name an order, but no sign.
 bool leads_from_nominal_to_actual(const std::vector<SignToken>& list) {
   const bool deviation = std::any_of(list.begin(), list.end(), [](const SignToken& one) {
     return one.kind == SignKind::kWord && says_deviation_or_sign(one.word);
   });
   for (std::size_t k = 1; deviation && k + 1 < list.size(); ++k)
-    if (kTowards.contains(list[k].word) && role_of(list[k - 1].word) == OperandRole::kNominal &&
+    if ((kTowards.contains(list[k].word) || list[k].kind == SignKind::kSlash) &&
+        role_of(list[k - 1].word) == OperandRole::kNominal &&
         role_of(list[k + 1].word) == OperandRole::kActual)
       return true;
   return false;
