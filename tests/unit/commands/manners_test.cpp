@@ -321,12 +321,11 @@ TEST_F(Manners, ImproveAddsTheCertainEffectBeforeAnAmbiguousPeriod) {
 
 TEST_F(Manners, CorrectWritesNothingBeyondMaxcorrection) {
   const auto machine = [](const char* most) {
-    return std::string(
-               "<machine name=\"m\"><variables><machineaxes><X rotary=\"false\" min=\"0\" max=\"300\" "
-               "maxcorrection=\"") +
-           most +
-           "\"/></machineaxes></variables><transforms branch=\"tool\"><sixdof n=\"1\" "
-           "X=\"X+1e-3*X\"/></transforms></machine>";
+    return fmt::format(
+        R"(<machine name="m"><variables><static><k value="0.001" nominal="0" unit="1"/></static><machineaxes>)"
+        R"(<X rotary="false" min="0" max="300" maxcorrection="{}"/></machineaxes></variables>)"
+        R"(<transforms branch="tool"><sixdof n="1" X="X+k*X"/></transforms></machine>)",
+        most);
   };
   write_file(folder_ + "/far.xml", machine("0.25"));
   write_file(folder_ + "/near.xml", machine("0.35"));
