@@ -93,6 +93,8 @@ const Case kCases[] = {
      "X[mm],Y[mm],x[mm],dirX,dirY\n1,5,1,1,-1\n2,6,2,-1,1\n"},
     {"SensesInWords", "X[mm];x[mm];Richtung;Lauf\n1;2;hin;1\n1;2;zurück;1\n",
      "X[mm],x[mm],dirX,run\n1,2,1,1\n1,2,-1,1\n"},
+    {"SensesInUnknownWords", "X[mm];x[mm];Richtung\n1;2;li\n1;2;re\n",
+     "refused: s.csv:2: \"li\": not an approach direction, for dirX: write + or -"},
     {"SensesCountedOneAndNought", "X[mm];x[mm];Direction\n1;2;1\n1;2;0\n",
      "X[mm],x[mm],dirX\n1,2,1\n1,2,-1\n"},
     {"SensesCountedOneAndTwo", "X[mm];x[mm];Richtg.\n1;2;1\n1;2;2\n", "X[mm],x[mm],dirX\n1,2,1\n1,2,-1\n"},

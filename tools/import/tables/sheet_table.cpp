@@ -284,6 +284,12 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
   if (is_sense(column.name))
     if (const int sense = sense_said(cell); sense != 0) return std::to_string(sense);
   if (const auto number = sheet::plain_number(cell, sheet.decimal_comma)) return *number;
+  if (is_sense(column.name))
+    throw text::InputError(
+        place, cell,
+        fmt::format("not an approach direction, for {}: write + or -, forward or backward, "
+                    "hin or zurück; + is the direction of increasing positions",
+                    column.name));
   if (sheet::is_date(cell))
     throw text::InputError(place, cell,
                            fmt::format("a date or a time of day, not a number, for {}; give the cells of "
