@@ -38,14 +38,9 @@ Survey read_survey(const SurveyArguments& arguments,
   };
   read();
   std::vector<std::string> notes;
-  if (effects::ProbeDeclared probe = effects::with_probe_offset(survey.text, survey.machine, survey.rows);
-      !probe.notes.empty()) {
-    survey.text = std::move(probe.text);
-    notes = std::move(probe.notes);
-    read();
-  }
-  for (const auto with_set_ups : {model::with_set_ups_of_files, model::with_camera_mountings}) {
-    model::SetUpsOfFiles own = with_set_ups(survey.text, survey.machine, survey.rows);
+  for (const auto complete :
+       {effects::with_probe_offset, model::with_set_ups_of_files, model::with_camera_mountings}) {
+    model::CompletedText own = complete(survey.text, survey.machine, survey.rows);
     if (own.notes.empty()) continue;
     survey.text = std::move(own.text);
     notes.insert(notes.end(), own.notes.begin(), own.notes.end());

@@ -104,16 +104,15 @@ void Finder::name_simplest() {
 }
 
 void Finder::scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first) {
-  const Eigen::MatrixXd accepted = pool_.columns(items);
-  const Eigen::MatrixXd beside = maths::orthonormal(accepted, 1e-6, nullptr);
+  const AcceptedColumns accepted(pool_.columns(items));
   std::vector<Scored> scored = scanner_.scan(
       accepted,
       [&](double share) {
         progress_(from + share * (to - from), fmt::format("{} candidates", list_.size()));
       },
       first);
-  for (Scored& fine : scanner_.scan_fine(beside, first)) scored.push_back(std::move(fine));
-  pool_.add(scored, beside);
+  for (Scored& fine : scanner_.scan_fine(accepted.basis, first)) scored.push_back(std::move(fine));
+  pool_.add(scored, accepted.basis);
 }
 
 std::size_t Finder::thermal_items() const {

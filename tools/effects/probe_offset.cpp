@@ -59,8 +59,8 @@ Touches touches_of(const model::Measurement& rows) {
 
 }  // namespace
 
-ProbeDeclared with_probe_offset(const std::string& text, const model::Machine& machine,
-                                const model::Measurement& rows) {
+model::CompletedText with_probe_offset(const std::string& text, const model::Machine& machine,
+                                       const model::Measurement& rows) {
   for (const char* const name : kProbe)
     if (machine.find_input(name)) return {text, {}};
   const Touches touches = touches_of(rows);
@@ -73,7 +73,7 @@ ProbeDeclared with_probe_offset(const std::string& text, const model::Machine& m
         {machine.file, 0}, kProbe[0],
         "the rows state the offset of a probe, but the machine file has no <variables> or no "
         "<transforms branch=\"tool\">: write the transform of the probe into the machine file");
-  ProbeDeclared result;
+  model::CompletedText result;
   std::vector<text::TextEdit> edits;
   const pugi::xml_node inputs = element_named(document, "inputs"),
                        statics = element_named(document, "static");

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <string>
-#include <vector>
 
+#include "tools/model/file_set_ups.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
 namespace vernier::effects {
-
-/// Text of a machine file in which an offset probe is declared, and one note for each addition.
-struct ProbeDeclared {
-  std::string text;
-  std::vector<std::string> notes;
-};
 
 /// Declares the columns probeX and probeY of a measurement in the machine file. probeX and probeY are the
 /// position of the probe in the frame of the tool, minus the position of the tool point, mm. The function
@@ -21,7 +15,7 @@ struct ProbeDeclared {
 /// probe is added as the static `probe_height`. If the measurement has no such columns, or the machine file
 /// declares probeX or probeY, the text does not change. `text`: the text from which `machine` was read. The
 /// caller must read machine and rows again.
-ProbeDeclared with_probe_offset(const std::string& text, const model::Machine& machine,
-                                const model::Measurement& rows);
+model::CompletedText with_probe_offset(const std::string& text, const model::Machine& machine,
+                                       const model::Measurement& rows);
 
 }  // namespace vernier::effects

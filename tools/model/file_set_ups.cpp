@@ -64,9 +64,9 @@ std::string element_of(const std::string& name, const BaseShift& start) {
 
 }  // namespace
 
-SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& machine,
+CompletedText with_set_ups_of_files(const std::string& text, const Machine& machine,
                                     const Measurement& rows) {
-  SetUpsOfFiles result{text, {}};
+  CompletedText result{text, {}};
   const auto plain = std::find_if(machine.base_shifts.begin(), machine.base_shifts.end(),
                                   [](const auto& s) { return !s.run; });
   if (rows.files.size() < 2 || plain == machine.base_shifts.end() || plain->hidden) return result;
@@ -140,9 +140,9 @@ BoardUse board_use(const Machine& machine, const Measurement& rows) {
 
 }  // namespace
 
-SetUpsOfFiles with_camera_mountings(const std::string& text, const Machine& machine,
+CompletedText with_camera_mountings(const std::string& text, const Machine& machine,
                                     const Measurement& rows) {
-  SetUpsOfFiles result{text, {}};
+  CompletedText result{text, {}};
   const auto [of_board, of_others] = board_use(machine, rows);
   if (of_board.empty()) return result;
   constexpr const char* kZero = R"(X="0" Y="0" Z="0" rX="0" rY="0" rZ="0"/>)";

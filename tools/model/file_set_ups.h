@@ -8,10 +8,10 @@
 
 namespace vernier::model {
 
-/// Text of a machine file in which each measurement file has its own set-up.
-struct SetUpsOfFiles {
+/// Text of a machine file to which measurement files added what they need: set-ups, mountings, a probe.
+struct CompletedText {
   std::string text;                // text of the machine file
-  std::vector<std::string> notes;  // one note for each set-up that was added
+  std::vector<std::string> notes;  // one note for each addition
 };
 
 /// Adds one BaseShift for each measurement file after the first. The name in `setup` is the file name without
@@ -24,7 +24,7 @@ struct SetUpsOfFiles {
 /// is hidden. The added BaseShifts have the start values of the BaseShift without `setup`. `text`: the text
 /// of the machine file from which `machine` was read. The caller must read the rows again with the new text
 /// of the machine file.
-SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& machine, const Measurement& rows);
+CompletedText with_set_ups_of_files(const std::string& text, const Machine& machine, const Measurement& rows);
 
 /// Adds a ToolShift for the unknown mounting of a camera. The set-ups concerned have readings of a board (bx
 /// by bz brx bry brz) and no ToolShift in the machine file. If all readings are of boards, one ToolShift
@@ -32,6 +32,6 @@ SetUpsOfFiles with_set_ups_of_files(const std::string& text, const Machine& mach
 /// such a camera. If the machine file has no BaseShift, one is added for the position of the board. Throws
 /// InputError if other readings belong to the same set-up, because their tool is not the camera. `text` and
 /// `rows` have the same meaning as for with_set_ups_of_files().
-SetUpsOfFiles with_camera_mountings(const std::string& text, const Machine& machine, const Measurement& rows);
+CompletedText with_camera_mountings(const std::string& text, const Machine& machine, const Measurement& rows);
 
 }  // namespace vernier::model

@@ -45,7 +45,7 @@ std::string best_of_effect(const diagnose::Evidence& evidence, const effects::Ef
   const std::vector<diagnose::ScannedCandidate> list = diagnose::enumerate_candidates(evidence, one);
   diagnose::Scanner scanner(evidence, list);
   const Eigen::MatrixXd none(evidence.residual().size(), 0);
-  std::vector<diagnose::Scored> scored = scanner.scan(none, {});
+  std::vector<diagnose::Scored> scored = scanner.scan(diagnose::AcceptedColumns(none), {});
   if (scored.empty())
     throw text::InputError(
         fmt::format("\"{}\": these rows do not show it at any location (give an add string)", effect.id));

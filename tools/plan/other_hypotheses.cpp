@@ -28,7 +28,7 @@ std::vector<FittedHypothesis> find_other_hypotheses(const effects::MachineText& 
   const std::vector<diagnose::ScannedCandidate> list = diagnose::enumerate_candidates(evidence, effects);
   diagnose::Scanner scanner(evidence, list);
   const Eigen::MatrixXd none(evidence.residual().size(), 0);
-  std::vector<diagnose::Scored> scored = scanner.scan(none, {});
+  std::vector<diagnose::Scored> scored = scanner.scan(diagnose::AcceptedColumns(none), {});
   std::sort(scored.begin(), scored.end(), [&](const diagnose::Scored& x, const diagnose::Scored& y) {
     return value_of(x, evidence) > value_of(y, evidence);
   });

@@ -332,15 +332,6 @@ class Search {
     return true;
   }
 
-  double range_of(std::size_t column) const {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const std::size_t row : sample_.rows) {
-      low = std::min(low, context_.columns[column].value[static_cast<Eigen::Index>(row)]);
-      high = std::max(high, context_.columns[column].value[static_cast<Eigen::Index>(row)]);
-    }
-    return high - low;
-  }
-
   /// Are two periods of a column parts of one pattern? Neighbours within one cycle over the range describe a
   /// sine whose amplitude or period changes along the axis; multiples of a frequency describe a pattern that
   /// is no sine. At positions that are multiples of a step, a multiple appears at its alias.
@@ -363,7 +354,8 @@ class Search {
   void join_periods() {
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       if (!taken_[i].period) continue;
-      const double range = range_of(taken_[i].term.column);
+      const auto [low, high] = range_of(sample_, context_.columns[taken_[i].term.column]);
+      const double range = high - low;
       const std::optional<double> step = step_of(sample_, context_.columns[taken_[i].term.column]);
       for (std::size_t k = taken_.size() - 1; k > i; --k) {
         const Taken& part = taken_[k];

@@ -10,6 +10,7 @@
 #include "tools/format/readings.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
+#include "tools/maths/golden.h"
 #include "tools/maths/median.h"
 
 namespace vernier::residual {
@@ -216,16 +217,21 @@ std::vector<KindSample> kind_samples(const model::Measurement& m, const Eigen::V
   return list;
 }
 
-std::optional<Period> strongest_period(const KindSample& sample, const RecordedColumn& column,
-                                       const Eigen::VectorXd& residual) {
-  constexpr double kMostCycles = 100;  // over the range: shorter periods need more positions than are read
-  const std::size_t values = value_count(sample, column), n = sample.rows.size();
-  if (values < 12) return std::nullopt;
+std::pair<double, double> range_of(const KindSample& sample, const RecordedColumn& column) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const std::size_t row : sample.rows) {
     low = std::min(low, column.value[static_cast<Eigen::Index>(row)]);
     high = std::max(high, column.value[static_cast<Eigen::Index>(row)]);
   }
+  return {low, high};
+}
+
+std::optional<Period> strongest_period(const KindSample& sample, const RecordedColumn& column,
+                                       const Eigen::VectorXd& residual) {
+  constexpr double kMostCycles = 100;  // over the range: shorter periods need more positions than are read
+  const std::size_t values = value_count(sample, column), n = sample.rows.size();
+  if (values < 12) return std::nullopt;
+  const auto [low, high] = range_of(sample, column);
   // Regular positions have aliases beyond half their number. Scattered positions allow as many
   // periods as there are rows.
   const double most =
@@ -261,12 +267,8 @@ std::optional<Period> strongest_period(const KindSample& sample, const RecordedC
 
 double refined_period(const KindSample& sample, const RecordedColumn& column, const Eigen::VectorXd& residual,
                       double length) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const std::size_t row : sample.rows) {
-    low = std::min(low, column.value[static_cast<Eigen::Index>(row)]);
-    high = std::max(high, column.value[static_cast<Eigen::Index>(row)]);
-  }
-  const auto explained = [&](double frequency) {
+  const auto [low, high] = range_of(sample, column);
+  const auto explained = [&, low = low](double frequency) {
     SineSums sums;
     for (std::size_t i = 0; i < sample.rows.size(); ++i) {
       const double angle =
@@ -276,16 +278,11 @@ double refined_period(const KindSample& sample, const RecordedColumn& column, co
     }
     return sums.explained(nullptr);
   };
-  // Golden section between the two neighbouring steps of the scan; the peak of a sine is wider than this.
-  constexpr double kGolden = 0.6180339887498949;
+  // Between the two neighbouring steps of the scan; the peak of a sine is wider than this.
+  constexpr int kSections = 30;
   const double step = 1 / (kOversampling * (high - low));
-  double from = 1 / length - step, to = 1 / length + step;
-  for (int i = 0; i < 30; ++i) {
-    const double left = to - kGolden * (to - from), right = from + kGolden * (to - from);
-    (explained(left) > explained(right) ? to : from) = explained(left) > explained(right) ? right : left;
-  }
-  const double refined = (from + to) / 2;
-  return explained(refined) > explained(1 / length) ? 1 / refined : length;
+  const maths::Peak best = maths::golden_peak(explained, 1 / length - step, 1 / length + step, kSections);
+  return best.value > explained(1 / length) ? 1 / best.at : length;
 }
 
 PairTest correlate(const Eigen::VectorXd& residual,

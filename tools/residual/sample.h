@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/format/readings.h"
@@ -65,6 +66,9 @@ struct Period {
 /// different values. `residual`: weighted residual, one value per row of the sample.
 std::optional<Period> strongest_period(const KindSample& sample, const RecordedColumn& column,
                                        const Eigen::VectorXd& residual);
+
+/// Returns the smallest and the largest value of a column over the rows of a sample.
+std::pair<double, double> range_of(const KindSample& sample, const RecordedColumn& column);
 
 /// Returns the period near `length` at which a sine explains most of the residual: the scan of
 /// strongest_period has steps of a quarter of a cycle over the range of the column. At a period between two

@@ -39,8 +39,7 @@ const RuleText& text_of(SafetyRule rule) {
       {"uncertainty", "of the correction",
        "a correction whose standard uncertainty exceeds half of its value may increase the error", 0.5,
        "measure more poses, or fit fewer parameters: fit --hold NAME, such as --hold \"table.*\"; a "
-       "correction "
-       "that is nearly zero fails this rule too, and can be accepted"},
+       "correction that is nearly zero fails this rule too, and can be accepted"},
       {"measured-range", "of the measured range",
        "outside the measured range the last value of a table is used and terms are extrapolated", 0.25,
        "measure the whole travel, or state the measured range as min and max of the axis"},

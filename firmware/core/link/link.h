@@ -40,8 +40,7 @@ class Link {
                                    std::uint8_t* reply) noexcept;
 
   /// Writes mode, positions, corrections and inputs into the registers of a Modbus master that does not use
-  /// the messages of the link. `values`: kLiveRegisters values. Not
-  /// real-time safe.
+  /// the messages of the link. `values`: kLiveRegisters values. Not real-time safe.
   void fill_registers(std::uint16_t* values);
   /// Executes a command from a Modbus master that uses only registers. The command is refused if the number
   /// is not a command, or if the tick has not executed the previous command. Not real-time safe.

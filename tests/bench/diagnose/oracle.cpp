@@ -98,7 +98,7 @@ OracleAnswer ask_oracle(const HiddenSurvey& survey) {
   Scanner scanner(evidence, list);
   Pool pool(evidence, scanner);
   const Eigen::MatrixXd nothing(evidence.residual().size(), 0);
-  std::vector<Scored> scored = scanner.scan(nothing, [](double) {});
+  std::vector<Scored> scored = scanner.scan(AcceptedColumns(nothing), [](double) {});
   for (Scored& fine : scanner.scan_fine(nothing)) scored.push_back(std::move(fine));
   pool.add(scored, nothing);
   std::vector<std::size_t> items;

@@ -16,14 +16,14 @@ const std::string kMachine =
   <machineaxes><X min="0" max="200"/><Z min="0" max="100"/></machineaxes><artefact name="bed" type="plane"/></variables>
   <transforms branch="tool"><sixdof n="1" X="X" Z="Z" rX="k"/></transforms></machine>)xml";
 
-ProbeDeclared declared(const std::string& rows, const std::string& text = kMachine) {
+model::CompletedText declared(const std::string& rows, const std::string& text = kMachine) {
   const model::Machine machine = model::parse_machine(text, "m.xml");
   return with_probe_offset(text, machine, model::parse_measurement(rows, "bed.csv", machine));
 }
 
 TEST(ProbeOffset, OfTheRowsIsATransformAfterTheTool) {
   const std::string rows = "X[mm],Z[mm],probeX[mm],probeY[mm],on\n0,0,-30,20,bed\n9,0,-30,20,bed\n";
-  const ProbeDeclared probe = declared(rows);
+  const model::CompletedText probe = declared(rows);
   ASSERT_EQ(probe.notes.size(), 1U);
   const model::Machine machine = model::parse_machine(probe.text, "m.xml");
   const model::Measurement read = model::parse_measurement(rows, "bed.csv", machine);
@@ -37,7 +37,8 @@ TEST(ProbeOffset, OfTheRowsIsATransformAfterTheTool) {
 }
 
 TEST(ProbeOffset, BesideTouchesOfTheToolPointTheHeightOfTheProbeIsFree) {
-  const ProbeDeclared probe = declared("X[mm],Z[mm],probeX[mm],probeY[mm],on\n0,0,-30,20,bed\n9,0,0,0,bed\n");
+  const model::CompletedText probe =
+      declared("X[mm],Z[mm],probeX[mm],probeY[mm],on\n0,0,-30,20,bed\n9,0,0,0,bed\n");
   ASSERT_EQ(probe.notes.size(), 2U);
   model::Machine machine = model::parse_machine(probe.text, "m.xml");
   machine.statics[*machine.find_static("probe_height")].value = 2;

@@ -27,7 +27,7 @@ Measurement read(const std::vector<File>& files, const Machine& machine) {
   return all;
 }
 
-SetUpsOfFiles set_ups(const std::vector<File>& files, const std::string& text = kMachine) {
+CompletedText set_ups(const std::vector<File>& files, const std::string& text = kMachine) {
   const Machine machine = parse_machine(text, "m.xml");
   return with_set_ups_of_files(text, machine, read(files, machine));
 }
@@ -35,7 +35,7 @@ SetUpsOfFiles set_ups(const std::vector<File>& files, const std::string& text = 
 TEST(FileSetUps, SecondFileHasItsOwnBaseShiftFromThePlainOne) {
   const std::vector<File> files = {{"a/laser.csv", "X[mm],x[mm]\n1,1\n"},
                                    {"a/tracker.csv", "X[mm],y[mm]\n1,1\n2,2\n"}};
-  const SetUpsOfFiles own = set_ups(files);
+  const CompletedText own = set_ups(files);
   ASSERT_EQ(own.notes.size(), 1U);
   const Machine machine = parse_machine(own.text, "m.xml");
   ASSERT_EQ(machine.base_shifts.size(), 2U);
@@ -54,7 +54,7 @@ TEST(FileSetUps, SecondFileHasItsOwnBaseShiftFromThePlainOne) {
 TEST(FileSetUps, TwoFilesOfOneNameAreNamedByTheirFolders) {
   const std::vector<File> files = {{"a/meas.csv", "X[mm],x[mm]\n1,1\n"},
                                    {"b/meas.csv", "X[mm],x[mm]\n1,1\n"}};
-  const SetUpsOfFiles own = set_ups(files);
+  const CompletedText own = set_ups(files);
   const Machine machine = parse_machine(own.text, "m.xml");
   ASSERT_EQ(machine.base_shifts.size(), 2U);
   const Measurement rows = read(files, machine);
@@ -77,7 +77,7 @@ TEST(FileSetUps, OneFileStatedSetUpsAndCheckFilesStayAsTheyAre) {
 
 TEST(FileSetUps, TwoFilesThatStateDifferentSetUpsHaveABaseShiftForEach) {
   const File one = {"one.csv", "X[mm],x[mm],setup\n1,1,s1\n"};
-  const SetUpsOfFiles own = set_ups({one,
+  const CompletedText own = set_ups({one,
                                      {"two.csv", "X[mm],x[mm],setup\n1,1,s2\n2,2,s3\n"},
                                      {"three.csv", "X[mm],x[mm],setup\n1,1,s1\n"}});
   const Machine machine = parse_machine(own.text, "m.xml");
@@ -97,14 +97,14 @@ TEST(FileSetUps, HiddenBaseShiftStaysTheOnlyOne) {
 
 /// A file of a camera on the tool, and what is added to the machine file for it.
 const std::string kBoardHead = "X[mm],bx[mm],by[mm],bz[mm],brx[deg],bry[deg],brz[deg]";
-SetUpsOfFiles mountings(const std::vector<File>& files, const std::string& text = kMachine) {
+CompletedText mountings(const std::vector<File>& files, const std::string& text = kMachine) {
   const Machine machine = parse_machine(text, "m.xml");
   return with_camera_mountings(text, machine, read(files, machine));
 }
 
 TEST(CameraMountings, ACameraHasAToolShiftOfItsOwn) {
   const File camera = {"cam.csv", kBoardHead + "\n1,0,0,500,1,2,3\n"};
-  const SetUpsOfFiles own = mountings({camera});
+  const CompletedText own = mountings({camera});
   ASSERT_EQ(own.notes.size(), 1U);
   const Machine machine = parse_machine(own.text, "m.xml");
   ASSERT_EQ(machine.tool_shifts.size(), 1U);
@@ -117,7 +117,7 @@ TEST(CameraMountings, ACameraHasAToolShiftOfItsOwn) {
 // The reflector of a tracker is not at the place of the camera.
 TEST(CameraMountings, BesideATrackerTheToolShiftIsOfTheSetUpOfTheCamera) {
   const File tracker = {"one.csv", "X[mm],x[mm]\n1,1\n"};
-  const SetUpsOfFiles own = mountings({tracker, {"cam.csv", kBoardHead + ",setup\n1,0,0,500,1,2,3,cam\n"}});
+  const CompletedText own = mountings({tracker, {"cam.csv", kBoardHead + ",setup\n1,0,0,500,1,2,3,cam\n"}});
   const Machine machine = parse_machine(own.text, "m.xml");
   ASSERT_EQ(machine.tool_shifts.size(), 1U);
   EXPECT_EQ(machine.tool_shifts[0].run, "cam");

@@ -258,6 +258,14 @@ std::vector<Finding> periods(const FailurePicture& picture) {
   return list;
 }
 
+/// A saw tooth of X with a period of 36.7 mm.
+void plant_saw(Planted& saw, double height_mm) {
+  plant(saw.residual, saw.m, ObservationKind::kX, [&](Eigen::Index i) {
+    const double turns = saw.axis(0)[i] / 36.7;
+    return height_mm * (turns - std::floor(turns) - 0.5);
+  });
+}
+
 // A strong sine between two steps of the scan, and a pattern that is no sine: each is one finding.
 TEST(FailurePicture, OnePatternIsOnePeriod) {
   Planted sine;
@@ -269,10 +277,7 @@ TEST(FailurePicture, OnePatternIsOnePeriod) {
   EXPECT_TRUE(of_sine[0].parts.empty());
   EXPECT_TRUE(of_sine[0].aliases.empty());  // the positions are scattered
   Planted saw;
-  plant(saw.residual, saw.m, ObservationKind::kX, [&](Eigen::Index i) {
-    const double turns = saw.axis(0)[i] / 36.7;
-    return 10e-3 * (turns - std::floor(turns) - 0.5);
-  });
+  plant_saw(saw, 10e-3);
   const std::vector<Finding> of_saw = periods(saw.picture());
   ASSERT_EQ(of_saw.size(), 1U);
   EXPECT_NEAR(*of_saw[0].period, 36.7, 0.1);
@@ -285,10 +290,7 @@ TEST(FailurePicture, OnePatternIsOnePeriod) {
 TEST(FailurePicture, AliasesOfOnePatternAreOneFinding) {
   Planted saw;
   for (double& x : saw.m.states.axis[0]) x = 5 * std::round(x / 5);
-  plant(saw.residual, saw.m, ObservationKind::kX, [&](Eigen::Index i) {
-    const double turns = saw.axis(0)[i] / 36.7;
-    return 20e-3 * (turns - std::floor(turns) - 0.5);
-  });
+  plant_saw(saw, 20e-3);
   const std::vector<Finding> found = periods(saw.picture());
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(*found[0].period, 36.7, 0.1);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
@@ -101,14 +102,15 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
   if (!arguments.profile.empty())
     importer::read_sheet_profile(wishes, text::read_file(arguments.profile), arguments.profile);
   importer::SheetWords words = arguments.words;
-  if (!arguments.machine.empty())
-    for (const model::Axis& axis : model::read_machine(arguments.machine).axes)
-      words.axes.push_back(axis.name);
+  std::optional<model::Machine> machine;
+  if (!arguments.machine.empty()) machine = model::read_machine(arguments.machine);
+  if (machine)
+    for (const model::Axis& axis : machine->axes) words.axes.push_back(axis.name);
   const std::string bytes = text::read_file(arguments.file);
   importer::SheetReading reading = importer::read_as_sheet(bytes, arguments.file, words, wishes);
   OpenAxes open;
-  if (!arguments.machine.empty()) {
-    open = open_axes(model::read_machine(arguments.machine), reading);
+  if (machine) {
+    open = open_axes(*machine, reading);
     if (open.found.sure) {
       const std::vector<std::string> more = open.words();
       words.columns.insert(words.columns.end(), more.begin(), more.end());
@@ -133,13 +135,13 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
   }();
   if (!open.found.pairs.empty())
     require_axes(
-        read, model::read_machine(arguments.machine), kind,
+        read, *machine, kind,
         "no column of the table has the name of this axis. As many other columns may be the axes in the "
         "order of the machine file. If this assignment and its units are right, give: ",
         open.words());
-  else if (!arguments.machine.empty())
+  else if (machine)
     require_axes(
-        read, model::read_machine(arguments.machine), kind,
+        read, *machine, kind,
         "no column of the table is the position of this axis. If a column has this position under "
         "another heading, give --column \"NAME[unit]=HEADING\" with the name of the axis; if the axis "
         "did not move, give its position: ");

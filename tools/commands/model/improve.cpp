@@ -204,22 +204,25 @@ class Improver {
   /// with the tool point itself do not confirm it. The probe has another position than the tool, and touches
   /// of one probe do not distinguish the shape of the touched object from an error of a carriage.
   bool not_confirmed_at_tool_point(const diagnose::LadderStep& step) {
+    const std::set<std::string> planes = planes_of_probe();
+    if (planes.empty()) return false;
     const model::Machine before = model::parse_machine(model_steps_.back().text, model_steps_.back().file),
                          after = model::parse_machine(step.text, arguments_.survey.machine);
-    for (const std::string& plane : planes_of_probe()) {
+    for (const std::string& plane : planes) {
       const exchange::BedShape from(
           exchange::bed_touches(before, model::rebind(all_rows_, first_, before), plane)),
           to(exchange::bed_touches(after, model::rebind(all_rows_, first_, after), plane));
       Json record = {{"effect", step.effect}, {"artefact", plane}, {"check_rows", from.checks}};
+      std::string why;
       if (from.checks == 0) {
-        not_confirmed_ = fmt::format(
+        why = fmt::format(
             "not added: {}. The rows touch \"{}\" with a probe at ({:g}, {:g}) mm beside the tool point, and "
             "no check row touches it with the tool point. The term may be the shape of \"{}\" or an error at "
             "the probe alone. Touch some points with the tool point (rows with role check, probeX and probeY "
             "0)",
             step.said, plane, from.offset[0], from.offset[1], plane);
       } else if (to.check_rms_um > from.check_rms_um) {
-        not_confirmed_ = fmt::format(
+        why = fmt::format(
             "not added: {}. It is not confirmed at the tool point: the rms of the height of \"{}\" at {} "
             "check rows changes from {:.3g} um to {:.3g} um",
             step.said, plane, from.checks, from.check_rms_um, to.check_rms_um);
@@ -227,9 +230,9 @@ class Improver {
       } else {
         continue;
       }
-      record["why_not"] = not_confirmed_;
-      refused_ = record;
-      fmt::print(out_, "{}\n", not_confirmed_);
+      fmt::print(out_, "{}\n", why);
+      record["why_not"] = std::move(why);
+      refused_ = std::move(record);
       return true;
     }
     return false;
@@ -260,7 +263,7 @@ class Improver {
 
   std::string explanation() const {
     const std::string last = last_["explanation"].get<std::string>();
-    return not_confirmed_.empty() ? last : last + " " + not_confirmed_ + ".";
+    return refused_.is_null() ? last : last + " " + refused_["why_not"].get<std::string>() + ".";
   }
 
   void finish() {
@@ -364,8 +367,8 @@ class Improver {
   model::Measurement rows_, all_rows_;
   std::vector<effects::Effect> effects_;
   std::vector<ModelStep> model_steps_;
-  Json first_diagnosis_, last_, refused_;
-  std::string not_confirmed_;
+  Json first_diagnosis_, last_;
+  Json refused_;  // the step that check rows with the tool point do not confirm; null: there is none
 };
 
 }  // namespace

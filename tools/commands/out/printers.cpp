@@ -37,12 +37,6 @@ exchange::PresentSetting present_of(const PrinterArguments& arguments) {
   return present;
 }
 
-/// The shape of the bed in the touches of --touches.
-void read_shape(const PrinterArguments& arguments, const model::Machine& machine,
-                const exchange::ThreeAxes& axes, exchange::Bed& bed) {
-  exchange::give_shape(bed, machine, axes, model::read_measurement(arguments.touches, machine));
-}
-
 Json shape_json(const exchange::BedShape& shape) {
   return {{"touches_of_probe", shape.by_probe},
           {"touches_of_nozzle", shape.by_nozzle},
@@ -114,7 +108,8 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   if (!arguments.touches.empty() && !bed)
     throw text::InputError(
         "--touches: the last fit of this machine has no plane that was touched, or --bed is none");
-  if (!arguments.touches.empty()) read_shape(arguments, machine, axes, *bed);
+  if (!arguments.touches.empty())
+    exchange::give_shape(*bed, machine, axes, model::read_measurement(arguments.touches, machine));
   exchange::PrinterCorrection correction =
       exchange::printer_correction(machine, axes, features, at, common.tolerance_um, bed);
   const std::vector<exchange::ConfigurationFile> texts =

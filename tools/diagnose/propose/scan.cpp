@@ -56,6 +56,12 @@ bool vanishes(const Eigen::RowVectorXd& norms, Eigen::Index column) {
 
 }  // namespace
 
+AcceptedColumns::AcceptedColumns(const Eigen::MatrixXd& all) {
+  std::vector<std::size_t> kept;
+  basis = maths::orthonormal(all, kIndependent, &kept);
+  columns = all(Eigen::all, kept);
+}
+
 ScanTarget Scanner::target(const Eigen::MatrixXd& beside) const {
   ScanTarget target{Eigen::MatrixXd(evidence_.residual().size(), beside.cols() + 1), evidence_.residual()};
   if (beside.cols() > 0) {
@@ -203,18 +209,17 @@ struct Scanner::Sources {
   Eigen::MatrixXd combine;  // directions^T = combine * columns^T
 };
 
-Scanner::Sources Scanner::sources(const Eigen::MatrixXd& accepted, const std::vector<std::size_t>& kept,
-                                  const Eigen::MatrixXd& beside) const {
+Scanner::Sources Scanner::sources(const AcceptedColumns& accepted) const {
+  const Eigen::MatrixXd& beside = accepted.basis;
   const Eigen::Index count = beside.cols();
   Sources sources{Eigen::MatrixXd(evidence_.residual().size(), count + 1),
                   Eigen::MatrixXd::Zero(count + 1, count + 1)};
   sources.columns.rightCols(1) = evidence_.residual();
   sources.combine(count, count) = 1;
   if (count == 0) return sources;
-  for (Eigen::Index j = 0; j < count; ++j)
-    sources.columns.col(j) = accepted.col(static_cast<Eigen::Index>(kept[static_cast<std::size_t>(j)]));
-  // accepted = beside * upper, so beside^T = upper^-T * accepted^T.
-  const Eigen::MatrixXd upper = beside.transpose() * sources.columns.leftCols(count);
+  sources.columns.leftCols(count) = accepted.columns;
+  // columns = beside * upper, so beside^T = upper^-T * columns^T.
+  const Eigen::MatrixXd upper = beside.transpose() * accepted.columns;
   const Eigen::MatrixXd inverse =
       upper.triangularView<Eigen::Upper>().transpose().solve(Eigen::MatrixXd::Identity(count, count));
   sources.combine.topLeftCorner(count, count) = inverse;
@@ -223,12 +228,10 @@ Scanner::Sources Scanner::sources(const Eigen::MatrixXd& accepted, const std::ve
   return sources;
 }
 
-std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& accepted,
+std::vector<Scored> Scanner::scan(const AcceptedColumns& accepted,
                                   const std::function<void(double)>& progress, std::size_t first_candidate) {
-  std::vector<std::size_t> kept;
-  const Eigen::MatrixXd beside = maths::orthonormal(accepted, kIndependent, &kept);
-  const ScanTarget target = this->target(beside);
-  const Sources sources = this->sources(accepted, kept, beside);
+  const ScanTarget target = this->target(accepted.basis);
+  const Sources sources = this->sources(accepted);
   kept_.renew(evidence_, candidates_.size());
   const std::vector<std::size_t> prepared = kept_.products().prepare(sources.columns, kept_.batches().size());
   std::vector<Scored> best(candidates_.size());
@@ -242,6 +245,7 @@ std::vector<Scored> Scanner::scan(const Eigen::MatrixXd& accepted,
     Part part(*this, room, target, best);
     for (std::size_t i = first; i < kept_.batches().size(); i += threads) {
       const ProjectedBatch& batch = kept_.batches()[i];
+      if (batch.points.back().candidate < first_candidate) continue;
       part.scan(batch, sources.combine * kept_.products().products(prepared, batch, i));
     }
     for (std::size_t i = first; i < others.size(); i += threads) {

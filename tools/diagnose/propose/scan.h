@@ -22,6 +22,13 @@ struct Scored {
   Eigen::Index unknowns = 0;    // number of coefficients and scanned values
 };
 
+/// Columns of the accepted effects that are independent of each other, and an orthonormal basis of their
+/// span. The columns are in the orthogonal complement of the model's free parameters.
+struct AcceptedColumns {
+  explicit AcceptedColumns(const Eigen::MatrixXd& all);
+  Eigen::MatrixXd columns, basis;
+};
+
 /// Part of the residual that a scan must explain: the residual after a fit of the accepted effects.
 struct ScanTarget {
   Eigen::MatrixXd directions;  // orthonormal columns of the accepted effects, and the residual as last column
@@ -36,10 +43,9 @@ class Scanner {
   Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates);
 
   /// Returns the best values on the grid for every candidate that is visible in the data. The order is that
-  /// of the list, beginning at `first_candidate`. `accepted`: columns of the accepted effects, in the
-  /// orthogonal complement of the model's free parameters; the part of a candidate in their span does not
+  /// of the list, beginning at `first_candidate`. The part of a candidate in the span of `accepted` does not
   /// count. `progress`: receives the completed fraction of the scan (0 to 1).
-  std::vector<Scored> scan(const Eigen::MatrixXd& accepted, const std::function<void(double)>& progress,
+  std::vector<Scored> scan(const AcceptedColumns& accepted, const std::function<void(double)>& progress,
                            std::size_t first_candidate = 0);
 
   /// Searches periods of cyclic errors that are shorter than the periods of the grid. Returns the best short
@@ -65,10 +71,8 @@ class Scanner {
  private:
   class Part;
   struct Sources;
-  /// Returns the sources of the directions of target(beside). `kept`: the columns of `accepted` that are
-  /// independent, of which `beside` is the orthonormal basis.
-  Sources sources(const Eigen::MatrixXd& accepted, const std::vector<std::size_t>& kept,
-                  const Eigen::MatrixXd& beside) const;
+  /// Returns the sources of the directions of target(accepted.basis).
+  Sources sources(const AcceptedColumns& accepted) const;
   /// Returns the difference of chi^2 below which two periods fit equally well. `left`: chi^2 that remains
   /// with the cyclic error in the model. If `left` exceeds the noise, the difference is scaled by `left`.
   double alike_within(double left) const;

@@ -93,7 +93,7 @@ double Surface::at(double x, double y) const {
   return z;
 }
 
-BedShape::BedShape(std::vector<BedTouch> touches) {
+BedShape::BedShape(const std::vector<BedTouch>& touches) {
   const Matrix3Xd probe = points_of(touches, false), nozzle = points_of(touches, true);
   by_probe = static_cast<std::size_t>(probe.cols()), by_nozzle = static_cast<std::size_t>(nozzle.cols());
   const Matrix3Xd& points = by_probe > 0 ? probe : nozzle;

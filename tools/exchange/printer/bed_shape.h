@@ -33,8 +33,8 @@ class Surface {
 struct BedTouch {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d nominal = Eigen::Vector3d::Zero();  // the touched point by the nominal machine
-  std::array<double, 2>
-      offset{};  // position of the probe minus position of the nozzle; 0: the nozzle touched
+  /// Position of the probe minus position of the nozzle, mm; 0: the nozzle touched.
+  std::array<double, 2> offset{};
   bool check = false;
 
   bool of_nozzle() const { return offset[0] == 0 && offset[1] == 0; }
@@ -47,7 +47,7 @@ struct BedTouch {
 class BedShape {
  public:
   /// Throws InputError if the fit rows have fewer than three touches of the bed.
-  explicit BedShape(std::vector<BedTouch> touches);
+  explicit BedShape(const std::vector<BedTouch>& touches);
 
   /// Height at x and y of workpiece coordinates, mm.
   double height(double x, double y) const;

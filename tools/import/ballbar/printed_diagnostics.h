@@ -30,9 +30,8 @@ std::vector<DiagnosticsSample> model_curve(const BallbarFile& file);
 
 /// Computes the diagnostics again that the software of the ball bar wrote into the file. The linear
 /// least-squares diagnostics and the cyclic errors are computed from the SIMULATION series of the file, not
-/// from the readings. Values at the ends,
-/// shares and ranks are computed from these diagnostics. Roundness and the other results are computed from
-/// the readings.
+/// from the readings. Values at the ends, shares and ranks are computed from these diagnostics. Roundness and
+/// the other results are computed from the readings.
 RecomputedResults recompute_diagnostics(const BallbarFile& file, const BallbarAnalysis& analysis,
                                         const CircularResult& circle);
 

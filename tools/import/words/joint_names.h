@@ -30,9 +30,8 @@ struct JointColumns {
 /// Finds columns for the axes under the names that robots use (shoulder_pan_joint, J1, A1, q1, joint_1). A
 /// result covers all axes:
 /// - sure: each axis has exactly one column whose name is equal except for punctuation, capital letters and
-/// the
-///   words joint, axis, position, pos and angle; or axes and one family of columns have the same numbers (J1
-///   to J6 and q1 to q6) and units of an angle (turning axes) or a length;
+///   the words joint, axis, position, pos and angle; or axes and one family of columns have the same numbers
+///   (J1 to J6 and q1 to q6) and units of an angle (turning axes) or a length;
 /// - not sure: the table has exactly as many columns with a possible unit as the machine has missing axes, or
 ///   exactly one numbered family has this size (actual_q_0 to actual_q_5): by their order.
 JointColumns joint_columns(const std::vector<MissingAxis>& axes, const std::vector<FreeColumn>& columns);

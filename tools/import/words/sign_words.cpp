@@ -30,16 +30,8 @@ const WordSet kComparisons = {"vergleich", "comparison", "compare", "tabelle",  
 const WordSet kMinusWords = {"minus", "less", "weniger", "abzüglich", "abzueglich", "abzgl", "abzügl"};
 const WordSet kTowards = {"zu", "to", "gegen", "gegenüber", "vs", "versus", "bis"};
 
-enum class SignKind {
-  kWord,
-  kMinus,
-  kEquals,
-  kColon,
-  kOpen,
-  kClose,
-  kBreak,
-  kSlash
-};  // from kBreak on: a part of the text ends
+/// From kBreak on a part of the text ends.
+enum class SignKind { kWord, kMinus, kEquals, kColon, kOpen, kClose, kBreak, kSlash };
 
 struct SignToken {
   SignKind kind = SignKind::kWord;
