@@ -173,7 +173,13 @@ std::vector<Product> Finder::best_products() {
 
 void Finder::select_again() {
   pose_problem();
-  const Selection selection = select(problem_, most_effects_);
+  std::vector<std::vector<std::size_t>> starts;
+  for (const std::vector<std::size_t>& items : starts_) {
+    starts.emplace_back();
+    for (const std::size_t item : items)
+      if (const auto entry = entry_of(item)) starts.back().push_back(*entry);  // none: the item failed a test
+  }
+  const Selection selection = select(problem_, most_effects_, starts);
   chosen_.clear();
   for (const std::size_t entry : selection.chosen) chosen_.push_back(entry_item_[entry]);
   criterion_ = selection.criterion;
@@ -226,7 +232,32 @@ double Finder::holders_of(std::size_t simple) const {
   return count;
 }
 
+void Finder::search_beside_lines(double from, double to) {
+  constexpr Eigen::Index kCurve = 3;  // coefficients: more than a straight line has
+  const std::vector<std::size_t> before = chosen_;
+  for (const std::size_t curve : before) {
+    if (!pool_.is_function_of_an_axis(curve) || pool_[curve].columns.cols() < kCurve) continue;
+    std::vector<std::size_t> set;
+    for (const std::size_t item : before)
+      if (!pool_.is_function_of_an_axis(item) ||
+          pool_.candidate(item).choice.axis != pool_.candidate(curve).choice.axis)
+        set.push_back(item);
+    std::optional<std::size_t> line;  // the most usual form of one coefficient
+    for (const std::size_t item : entry_item_)
+      if (pool_[item].columns.cols() == 1 && pool_.contains(curve, item) &&
+          (!line || pool_.penalty(pool_[item].scored) < pool_.penalty(pool_[*line].scored)))
+        line = item;
+    if (!line) continue;
+    set.push_back(*line);
+    std::sort(set.begin(), set.end());
+    if (std::find(starts_.begin(), starts_.end(), set) != starts_.end()) continue;
+    scan_beside(set, from, to);
+    starts_.push_back(std::move(set));
+  }
+}
+
 void Finder::search() {
+  starts_.clear();
   scan_beside({}, 0.05, 0.3);
   select_again();
   constexpr int kMostScans = 6;     // of all candidates beside the chosen ones, at most
@@ -239,6 +270,7 @@ void Finder::search() {
     if (chosen_.size() > 1)
       for (const std::size_t item : before)
         scan_beside(without(item), 0.34 + 0.08 * round, 0.38 + 0.08 * round);
+    search_beside_lines(0.38 + 0.08 * round, 0.38 + 0.08 * round);
     select_again();
     if (criterion_ > criterion - kSettled) break;
   }
@@ -536,8 +568,12 @@ bool Finder::has_input(std::size_t item, effects::InputClass wanted) const {
   });
 }
 
+Eigen::VectorXd Finder::contribution(std::size_t item) const {
+  return pool_[item].columns * own_coefficients(item);
+}
+
 bool Finder::shows_in_one_block(std::size_t item) const {
-  const Eigen::VectorXd part = pool_[item].columns * own_coefficients(item);
+  const Eigen::VectorXd part = contribution(item);
   std::map<int, double> of_block;
   for (Eigen::Index i = 0; i < part.size(); ++i)
     of_block[evidence_.blocks()[static_cast<std::size_t>(i)]] += part[i] * part[i];
@@ -564,6 +600,12 @@ std::string Finder::too_large(std::size_t item) const {
       return fmt::format("size: the term would reach {:.3g}, more than the largest plausible value {:g}",
                          size, limit);
   }
+  // Effects that cancel each other are not determined one by one.
+  if (const double times = contribution(item).norm() / std::max(evidence_.residual().norm(), 1e-300);
+      times > thresholds_.most_of_error)
+    return fmt::format(
+        "size: the effect would be {:.2g} times as large as the error, and other effects would cancel it",
+        times);
   const double share =
       evidence_.share_of_touch_error(candidate, pool_[item].scored.scanned, own_coefficients(item));
   if (share > thresholds_.share_of_touch_error)

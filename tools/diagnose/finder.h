@@ -130,6 +130,10 @@ class Finder {
   /// terms.
   double holders_of(std::size_t simple) const;
   void search();
+  /// For each axis of which an accepted effect is a curve: adds the candidates beside a straight line in
+  /// place of all accepted functions of that axis. A curve through a few positions follows a short cyclic
+  /// error at these positions, so that its period would not be found beside the curve.
+  void search_beside_lines(double from, double to);
   /// Reduces the weight of readings whose errors are correlated at one pose, in a run or in time.
   void weigh_correlation();
   void share_poses();
@@ -190,6 +194,8 @@ class Finder {
   /// much worse that the likelihood ratio is 20 to 1 against the alternative. `of_item`: the divisions for
   /// `item`.
   bool predicts_worse(std::size_t alternative, std::size_t item, const std::vector<Division>& of_item) const;
+  /// Returns what an accepted effect contributes to each reading, beside the free parameters of the model.
+  Eigen::VectorXd contribution(std::size_t item) const;
   /// has_input: true if the term of a candidate contains an input of the class `wanted`. shows_in_one_block:
   /// true if one run contains nearly all that an accepted effect explains. If an effect acts in only one run,
   /// the other runs cannot confirm the effect.
@@ -222,6 +228,7 @@ class Finder {
   Pool pool_;
   SelectionProblem problem_;
   std::vector<std::size_t> entry_item_, chosen_;
+  std::vector<std::vector<std::size_t>> starts_;  // sets of items from which a selection begins too
   double criterion_ = 0, chi_square_ = 0;
 };
 

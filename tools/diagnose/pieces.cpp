@@ -20,11 +20,6 @@ bool unresolved(double a, double b, double length) {
   return a > 0 && b > 0 && length * std::abs(1 / a - 1 / b) < 1;
 }
 
-bool is_function_of_its_axis(const Evidence& evidence, const effects::Candidate& candidate) {
-  return candidate.choice.axis && candidate.choice.place && candidate.terms.size() == 1 &&
-         drivers_of(evidence.machine(), candidate).empty();
-}
-
 /// A wave with enough periods in the range to be identified.
 bool is_plain_wave(const Evidence& evidence, const Pool& pool, std::size_t item) {
   const double period = pool.period_of(item).value_or(0);
@@ -69,7 +64,7 @@ std::vector<std::size_t> unresolved_periods(const Evidence& evidence, const Pool
     for (const std::size_t b : items) {
       if (a >= b) continue;
       const effects::Candidate &x = pool.candidate(a), &y = pool.candidate(b);
-      if (!is_function_of_its_axis(evidence, x) || !is_function_of_its_axis(evidence, y)) continue;
+      if (!pool.is_function_of_an_axis(a) || !pool.is_function_of_an_axis(b)) continue;
       if (x.choice.axis != y.choice.axis || !moves_alike(evidence, *x.choice.place, *y.choice.place))
         continue;
       const Evidence::Range range = evidence.range_of(*x.choice.axis);
@@ -147,9 +142,7 @@ std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const 
   };
   std::vector<std::size_t> group = largest_group(
       evidence, pool, items,
-      [&](std::size_t item) {
-        return is_function_of_its_axis(evidence, pool.candidate(item)) && !is_cause(item);
-      },
+      [&](std::size_t item) { return pool.is_function_of_an_axis(item) && !is_cause(item); },
       [&](std::size_t a, std::size_t b) {
         return choice(a).axis == choice(b).axis && moves_alike(evidence, *choice(a).place, *choice(b).place);
       });

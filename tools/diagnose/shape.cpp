@@ -98,21 +98,18 @@ Jump best_jump(const Evidence& evidence, const effects::DofPlace& place, const E
   return best;
 }
 
-bool is_function_of_an_axis(const Evidence& evidence, const Pool& pool, std::size_t item) {
-  const effects::Candidate& candidate = pool.candidate(item);
-  return candidate.choice.axis && candidate.choice.place && candidate.terms.size() == 1 &&
-         drivers_of(evidence.machine(), candidate).empty();
+/// True if both items are functions of the same axis. Functions of the same axis may be pieces of one
+/// function.
+bool is_along(const Pool& pool, std::size_t a, std::size_t b) {
+  return pool.is_function_of_an_axis(a) && pool.candidate(a).choice.axis == pool.candidate(b).choice.axis;
 }
 
-/// The other items that are not functions of the same axis. Functions of the same axis may be
-/// pieces of one function.
-std::vector<std::size_t> of_other_axes(const Evidence& evidence, const Pool& pool,
-                                       const std::vector<std::size_t>& items, std::size_t item) {
+/// The other items that are not functions of the same axis.
+std::vector<std::size_t> of_other_axes(const Pool& pool, const std::vector<std::size_t>& items,
+                                       std::size_t item) {
   std::vector<std::size_t> others;
   for (const std::size_t other : items)
-    if (other != item && !(is_function_of_an_axis(evidence, pool, other) &&
-                           pool.candidate(other).choice.axis == pool.candidate(item).choice.axis))
-      others.push_back(other);
+    if (other != item && !is_along(pool, other, item)) others.push_back(other);
   return others;
 }
 
@@ -146,26 +143,29 @@ OwnPart own_part(const Evidence& evidence, Eigen::MatrixXd columns, const Eigen:
 /// do not explain is below x with the probability x^((r - 2) / 2). Minus infinity if the axis was read at so
 /// many positions that no period explains an unrelated pattern.
 double log_chance_of_periods(const Evidence& evidence, const Pool& pool,
-                             const std::vector<std::size_t>& items, std::size_t item,
-                             const Eigen::MatrixXd& beside) {
+                             const std::vector<std::size_t>& items, std::size_t item) {
   const ShapeThresholds& limits = evidence.thresholds().shape;
   const effects::Choice& choice = pool.candidate(item).choice;
   const Eigen::VectorXd u = positions(evidence, *choice.axis);
   const int read = positions_read(u, limits.apart);
   if (read > 5 * static_cast<int>(limits.most_half_waves)) return -std::numeric_limits<double>::infinity();
   const Evidence::Range range = evidence.range_of(*choice.axis);
-  const std::vector<std::size_t> apart = of_other_axes(evidence, pool, items, item);
-  std::vector<std::size_t> along;
+  // A straight line beside the periods is not part of the pattern: a large lead error would hide what the
+  // periods leave.
+  std::vector<std::size_t> along, others;
   double log_tries = 0, periods = 0;
   for (const std::size_t one : items) {
-    if (std::find(apart.begin(), apart.end(), one) != apart.end()) continue;
-    along.push_back(one);
-    if (const std::optional<double> period = pool.period_of(one)) {
-      // The frequencies that the search compares; the order of several periods does not matter.
-      const double tries = evidence.thresholds().fine.per_range * (range.high - range.low) / *period;
-      log_tries += std::log(std::max(1.0, tries)) - std::log(++periods);
+    const std::optional<double> period = pool.period_of(one);
+    if (!period || !is_along(pool, one, item)) {
+      others.push_back(one);
+      continue;
     }
+    along.push_back(one);
+    // The frequencies that the search compares; the order of several periods does not matter.
+    const double tries = evidence.thresholds().fine.per_range * (range.high - range.low) / *period;
+    log_tries += std::log(std::max(1.0, tries)) - std::log(++periods);
   }
+  const Eigen::MatrixXd beside = pool.columns(others);
   const OwnPart pattern = own_part(evidence, half_waves(evidence, *choice.place, u, read - 1), beside);
   const OwnPart found = own_part(evidence, pool.columns(along), beside);
   const double freedom = pattern.rank() - found.rank();
@@ -181,7 +181,7 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
   const double seen_per_unknown =
       pool[item].scored.scanned.empty() ? limits.seen_per_unknown : limits.seen_per_period;
   const effects::Choice& choice = pool.candidate(item).choice;
-  const Eigen::MatrixXd beside = pool.columns(of_other_axes(evidence, pool, items, item));
+  const Eigen::MatrixXd beside = pool.columns(of_other_axes(pool, items, item));
   const AxisFunction shape = function_of_axis(evidence, *choice.axis, *choice.place, beside);
   const auto coefficients = static_cast<double>(pool[item].columns.cols());
   const double unknowns = coefficients + static_cast<double>(pool[item].scored.scanned.size());
@@ -206,8 +206,7 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
         "axis beside the model: any function of the axis would fit equally well",
         pool.candidate(item).spoken, unknowns, shape.seen);
   if (!pool.period_of(item)) return {};
-  if (const double chance = log_chance_of_periods(evidence, pool, items, item, beside);
-      chance > limits.change_chance)
+  if (const double chance = log_chance_of_periods(evidence, pool, items, item); chance > limits.change_chance)
     return fmt::format(
         "{}: the axis was read at {} positions only, and the best of all periods explains other errors that "
         "repeat at these positions nearly as well (p = {:.1g}); read the axis at more positions, at uneven "
@@ -256,7 +255,7 @@ AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const 
 double log_p_of_change(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                        std::size_t item) {
   const Eigen::MatrixXd raw = evidence.columns(pool.candidate(item), pool[item].scored.scanned);
-  const bool curve = is_function_of_an_axis(evidence, pool, item) && pool[item].scored.scanned.empty();
+  const bool curve = pool.is_function_of_an_axis(item) && pool[item].scored.scanned.empty();
   const std::size_t axes = evidence.machine().axes.size();
   Eigen::MatrixXd changed(raw.rows(), 2 * raw.cols() * static_cast<Index>(axes));
   Index count = 0;
@@ -278,7 +277,7 @@ double log_p_of_change(const Evidence& evidence, const Pool& pool, const std::ve
 
 std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                            std::size_t item) {
-  if (is_function_of_an_axis(evidence, pool, item)) {
+  if (pool.is_function_of_an_axis(item)) {
     const std::string doubt = doubt_of_curve(evidence, pool, items, item);
     if (!doubt.empty()) return doubt;
   }

@@ -221,6 +221,7 @@ FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::
   fine.step = 1 / (limits.per_range * fine.length);
   // The two lists overlap, so that a peak between them is in this list.
   fine.slowest = 1 / grid.front() - 3 * fine.step;
+  fine.from = 1 / grid.back();
   fine.fastest = most_frequency(stations(evidence, axis, fine.length), fine.length, limits);
   if (shortest > 0) fine.fastest = std::min(fine.fastest, 1 / shortest);
   return fine.fastest > fine.slowest + limits.fewest * fine.step ? fine : FinePeriods{};
@@ -316,7 +317,7 @@ bool is_affordable(const Evidence& evidence, Index count, const Eigen::MatrixXd&
 
 namespace {
 
-/// The same by exact gains, for one candidate. `waves`: at the frequencies of `fine`.
+/// The same by exact gains, for one candidate. `waves`: at the frequencies from fine.begin() on.
 std::vector<double> best_by_gain(const Evidence& evidence, const FinePeriods& fine,
                                  const ProjectedWaves& waves, const Eigen::MatrixXd& beside,
                                  const Eigen::VectorXd& residual) {
@@ -325,18 +326,37 @@ std::vector<double> best_by_gain(const Evidence& evidence, const FinePeriods& fi
   const Eigen::MatrixXd gains = gains_beside(evidence, waves, beside, residual).transpose();
   const double freedom = std::max(1.0, evidence.freedom()), all = residual.squaredNorm();
   const double left = std::max(all - gains.maxCoeff(), evidence.noise_known() ? freedom : 0.0);
-  constexpr int kSections = 12;  // of a golden search between two frequencies
-  std::vector<double> periods;
-  for (const Index k : best_peaks(gains, 0, all / freedom * 2 * std::log(fine.tries()),
-                                  left / freedom * limits.nearly_as_well, limits.peaks)) {
-    const double middle = fine.slowest + static_cast<double>(k) * fine.step;
-    periods.push_back(1 / maths::golden_peak(
-                              [&](double frequency) {
-                                return wave_gains(evidence, wave, frequency, 0, 1, beside, residual)[0];
-                              },
-                              middle - fine.step, middle + fine.step, kSections)
-                              .at);
+  // Between two tested frequencies a peak keeps nine tenths of its height, so that each peak of that height
+  // may be the highest. With few positions there are many such peaks.
+  constexpr int kSections = 12;             // of a golden search between two frequencies
+  constexpr double kKept = 0.9;             // share of a peak's height between two tested frequencies
+  constexpr std::size_t kMostRefined = 24;  // peaks
+  const double high = kKept * kKept * gains.maxCoeff();
+  const double margin = left / freedom * limits.nearly_as_well;
+  std::vector<std::pair<double, double>> refined;  // gain and period
+  for (const Index k :
+       best_peaks(gains, 0, all / freedom * 2 * std::log(fine.tries()), margin, kMostRefined)) {
+    if (refined.size() >= limits.peaks && gains(0, k) < high) continue;
+    const double middle = fine.begin() + static_cast<double>(k) * fine.step;
+    const auto gain_at = [&](double frequency) {
+      return wave_gains(evidence, wave, frequency, 0, 1, beside, residual)[0];
+    };
+    // With few positions, two peaks can be nearer to each other than the tested frequencies.
+    const maths::Peak below = maths::golden_peak(gain_at, middle - fine.step, middle, kSections),
+                      above = maths::golden_peak(gain_at, middle, middle + fine.step, kSections);
+    const maths::Peak& peak = below.value > above.value ? below : above;
+    refined.emplace_back(peak.value, 1 / peak.at);
   }
+  std::sort(refined.rbegin(), refined.rend());
+  // The highest peaks, and the slowest of those that are nearly as high.
+  std::vector<double> periods;
+  double slowest = 0;
+  for (const auto& [gain, period] : refined) {
+    if (periods.size() < limits.peaks) periods.push_back(period);
+    if (gain >= refined.front().first - margin) slowest = std::max(slowest, period);
+  }
+  if (std::find(periods.begin(), periods.end(), slowest) == periods.end() && slowest > 0)
+    periods.push_back(slowest);
   return periods;
 }
 
@@ -350,13 +370,16 @@ std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
   std::vector<std::vector<double>> found(of_axis.size());
   if (of_axis.empty()) return found;
   const FinePeriods& fine = *of_axis.front();
-  const auto count = static_cast<Index>(std::floor((fine.fastest - fine.slowest) / fine.step)) + 1;
-  if (is_affordable(evidence, count * static_cast<Index>(of_axis.size()), beside)) {
+  const auto count_from = [&](double first) {
+    return static_cast<Index>(std::floor((fine.fastest - first) / fine.step)) + 1;
+  };
+  if (const Index count = count_from(fine.begin());
+      is_affordable(evidence, count * static_cast<Index>(of_axis.size()), beside)) {
     for (std::size_t i = 0; i < of_axis.size(); ++i) {
       const ProjectedWaves* known = kept == nullptr ? nullptr : kept->waves(candidates[i]);
       ProjectedWaves made;
       if (known == nullptr) {
-        made = projected_waves(evidence, {fine.axis, of_axis[i]->carrier}, of_axis[i]->slowest,
+        made = projected_waves(evidence, {fine.axis, of_axis[i]->carrier}, of_axis[i]->begin(),
                                of_axis[i]->step, count);
         known = kept != nullptr && kept->has_room(made.columns.size())
                     ? &kept->keep(candidates[i], std::move(made))
@@ -374,7 +397,7 @@ std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
   for (std::size_t i = 0; i < of_axis.size(); ++i)
     products.col(static_cast<Index>(i)) = of_axis[i]->carrier.cwiseProduct(weighed.col(0));
   const Positions positions = by_position(evidence, fine.axis, products);
-  const Eigen::MatrixXd power = powers(positions, fine.slowest, fine.step, count);
+  const Eigen::MatrixXd power = powers(positions, fine.slowest, fine.step, count_from(fine.slowest));
   // Power at which the wave explains as much as the highest of so many waves explains of noise.
   const double variance = residual.squaredNorm() / std::max(1.0, evidence.freedom());
   const FinePeriodThresholds& limits = evidence.thresholds().fine;

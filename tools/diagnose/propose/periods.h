@@ -19,7 +19,12 @@ struct FinePeriods {
   double step = 0;                  // interval between the tested frequencies
   double length = 0;                // measured range of the axis, in its unit
   Eigen::VectorXd carrier;          // common factor of the sine and the cosine of the term, per reading
+  /// Lowest frequency of the exact search; 0: `slowest`. The exact search repeats the frequencies of the
+  /// grid: the grid refines only its best value, and with few positions the best value is often beside
+  /// another peak.
+  double from = 0;
 
+  double begin() const { return from > 0 ? from : slowest; }
   bool any() const { return fastest > slowest; }
   bool holds(double period) const { return any() && period * slowest <= 1 && period * fastest >= 1; }
   /// Returns the number of frequencies that the measured range distinguishes.
@@ -39,9 +44,9 @@ double shortest_told_apart(const Evidence& evidence, std::size_t axis);
 std::vector<double> alias_frequencies(const Evidence& evidence, std::size_t axis, double most);
 
 /// Returns the search range of an axis for periods shorter than the shortest period of `grid` (increasing
-/// values). The search range ends at the longest of three periods: 1/1000 of the measured range, the period
-/// with 80 periods for each position of the axis, and `shortest` (shortest_told_apart). The member `carrier`
-/// of the result is empty.
+/// values). The exact search begins at the longest period of `grid`. The search range ends at the longest of
+/// three periods: 1/1000 of the measured range, the period with 80 periods for each position of the axis, and
+/// `shortest` (shortest_told_apart). The member `carrier` of the result is empty.
 FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::vector<double>& grid,
                          double shortest);
 

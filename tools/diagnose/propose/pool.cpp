@@ -223,6 +223,12 @@ bool Pool::same_columns(std::size_t a, std::size_t b) const {
   return static_cast<double>(x.cols()) - common < thresholds_.same_share;
 }
 
+bool Pool::is_function_of_an_axis(std::size_t i) const {
+  const effects::Candidate& one = candidate(i);
+  return one.choice.axis && one.choice.place && one.terms.size() == 1 &&
+         drivers_of(evidence_.machine(), one).empty();
+}
+
 double Pool::common_share(std::size_t item, std::size_t other) const {
   const Eigen::MatrixXd basis = maths::orthonormal(items_[other].columns, 1e-6, nullptr);
   return (basis.transpose() * items_[item].columns).squaredNorm() / items_[item].columns.squaredNorm();

@@ -62,6 +62,8 @@ class Pool {
   std::optional<double> period_of(std::size_t i) const;
   /// True if a candidate is a term of the product search, without a name in the catalogue.
   bool is_custom(std::size_t i) const { return candidate(i).choice.effect == &effects::custom_effect(); }
+  /// True if the candidate is one term that depends on the position of one axis and on nothing else.
+  bool is_function_of_an_axis(std::size_t i) const;
   /// Returns the share of the sum of squares of one candidate's columns that is in the span of another
   /// candidate's columns.
   double common_share(std::size_t item, std::size_t other) const;

@@ -178,12 +178,16 @@ Selection evaluate_selection(const SelectionProblem& p, const std::vector<std::s
   return result;
 }
 
-Selection select(const SelectionProblem& p, std::size_t most) {
+Selection select(const SelectionProblem& p, std::size_t most,
+                 const std::vector<std::vector<std::size_t>>& starts) {
   Selection best = improve(p, evaluate_selection(p, {}), most);
-  if (most >= 2) {
-    const Selection other = improve(p, best_pair(p), most);
-    if (other.criterion < best.criterion - 1e-9) best = other;
-  }
+  const auto try_from = [&](const Selection& start) {
+    Selection other = improve(p, start, most);
+    if (other.criterion < best.criterion - 1e-9) best = std::move(other);
+  };
+  if (most >= 2) try_from(best_pair(p));
+  for (const std::vector<std::size_t>& start : starts)
+    if (start.size() <= most) try_from(evaluate_selection(p, start));
   order(p, best);
   return best;
 }

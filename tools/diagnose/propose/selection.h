@@ -51,8 +51,10 @@ Selection evaluate_selection(const SelectionProblem& problem, const std::vector<
 double likelihood_part(const SelectionProblem& problem, double chi_square);
 
 /// Returns the set of at most `most` entries with the smallest BIC. The search uses forward steps, pairs,
-/// exchanges and backward steps.
-Selection select(const SelectionProblem& problem, std::size_t most);
+/// exchanges and backward steps. It begins with the empty set, with the best pair, and with each set of
+/// entries in `starts`.
+Selection select(const SelectionProblem& problem, std::size_t most,
+                 const std::vector<std::vector<std::size_t>>& starts = {});
 
 /// Returns the coefficients of the columns of a set, in the order of the set.
 Eigen::VectorXd coefficients(const SelectionProblem& problem, const std::vector<std::size_t>& chosen);

@@ -324,6 +324,10 @@ struct AcceptanceThresholds {
   /// are the eccentricity of a resolver and the sag of a long arm. Joints of humanoid robots deflect by one
   /// degree in fifty degrees of travel.
   double size_share = 0.02;
+  /// Largest contribution of one effect to the residual, as a multiple of the residual (root sum of squares).
+  /// A larger contribution is cancelled by the contributions of other effects: the readings then determine
+  /// only the sum of these effects.
+  double most_of_error = 2;
   /// For touch rows: largest change of a term that the touch error in its positions causes, divided by the
   /// touch error. The ratio of a term's change to the touch error is the slope of the term. Error terms of
   /// real machines have slopes below 0.01.
@@ -356,6 +360,7 @@ struct AcceptanceThresholds {
     visit("acceptance.most_levels", most_levels);
     visit("acceptance.parts_of_sweep", parts_of_sweep);
     visit("acceptance.size_share", size_share);
+    visit("acceptance.most_of_error", most_of_error);
     visit("acceptance.share_of_touch_error", share_of_touch_error);
     visit("acceptance.witnesses", witnesses);
     visit("acceptance.copy_of_failed", copy_of_failed);
