@@ -11,9 +11,11 @@
 #include "tools/diagnose/copies.h"
 #include "tools/diagnose/finder.h"
 #include "tools/diagnose/outliers.h"
+#include "tools/diagnose/pieces.h"
 #include "tools/diagnose/proof.h"
 #include "tools/diagnose/refit.h"
 #include "tools/diagnose/sentences.h"
+#include "tools/diagnose/shape.h"
 #include "tools/diagnose/verdict.h"
 #include "tools/effects/add_string.h"
 #include "tools/effects/fitted_effect.h"
@@ -54,7 +56,7 @@ class Diagnoser {
     result_.searched = finder_.candidates().size();
     result_.noise = finder_.noise();
     result_.noise_unit = fit::noise_unit(measurement_);
-    take(fit_steps(finder_.chosen()));
+    take(fit_steps(certain_first(finder_.chosen())));
     decide();
     fit_candidates();
     const Findings found{options_,   measurement_,   machine_,      finder_, accepted_,
@@ -76,6 +78,19 @@ class Diagnoser {
     fit::FitOptions options;
     options.noise = fit::NoiseModel{};
     return options;
+  }
+
+  /// Orders the effects: those that stay causes whatever the doubtful ones are come first, so that one of
+  /// them is named.
+  std::vector<std::size_t> certain_first(std::vector<std::size_t> items) const {
+    const Evidence& evidence = finder_.evidence();
+    std::vector<std::size_t> doubtful = pieces_of_one_function(evidence, pool_, items);
+    for (const std::size_t item : items)
+      if (!doubt_of_shape(evidence, pool_, items, item).empty()) doubtful.push_back(item);
+    if (!doubtful.empty())
+      std::stable_partition(items.begin(), items.end(),
+                            [&](std::size_t item) { return stands_beside(evidence, pool_, item, doubtful); });
+    return items;
   }
 
   /// Returns the verdict if the readings are not those of this machine, as `fit` reports. A search

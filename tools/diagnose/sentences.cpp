@@ -73,7 +73,7 @@ std::string cause_in_words(const CandidateFinding& cause, const std::string& nex
     text += fmt::format(" The BIC of the next best cause, {}, is higher by {:.0f}.", next_best, distance);
   std::vector<std::string> beside;  // the stepwise model starts with the given model
   for (std::size_t i = 1; i < steps.size(); ++i)
-    if (steps[i].said != cause.candidate.spoken) beside.push_back(steps[i].said);
+    if (steps[i].certain && steps[i].said != cause.candidate.spoken) beside.push_back(steps[i].said);
   if (!cause.candidate.choice.runs.empty())
     text += " An instrument that was set up anew between the runs explains these rows as well.";
   if (!beside.empty()) text += fmt::format(" Beside it: {}.", fmt::join(beside, "; "));

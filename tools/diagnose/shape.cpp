@@ -291,4 +291,22 @@ std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std
   return {};
 }
 
+bool stands_beside(const Evidence& evidence, const Pool& pool, std::size_t item,
+                   const std::vector<std::size_t>& doubtful) {
+  const auto drivers = drivers_of(evidence.machine(), pool.candidate(item));
+  const auto is_of_motion = [](const auto& driver) {
+    const auto kind = static_cast<model::SymbolKind>(driver.first);
+    return kind == model::SymbolKind::kVelocity || kind == model::SymbolKind::kAcceleration ||
+           kind == model::SymbolKind::kDirection || kind == model::SymbolKind::kSince ||
+           kind == model::SymbolKind::kFeed || kind == model::SymbolKind::kCurvature;
+  };
+  if (drivers.empty() || pool.is_custom(item) || !std::all_of(drivers.begin(), drivers.end(), is_of_motion))
+    return false;
+  return std::none_of(doubtful.begin(), doubtful.end(), [&](std::size_t other) {
+    const auto others = drivers_of(evidence.machine(), pool.candidate(other));
+    return other == item || std::any_of(others.begin(), others.end(),
+                                        [&](const auto& driver) { return drivers.contains(driver); });
+  });
+}
+
 }  // namespace vernier::diagnose

@@ -52,4 +52,11 @@ double log_p_of_change(const Evidence& evidence, const Pool& pool, const std::ve
 std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                            std::size_t item);
 
+/// Returns true if an effect of the catalogue stays a cause whatever the doubtful effects really are: it
+/// depends on the motion (approach direction, speed, acceleration, travel since a reversal), on nothing else,
+/// and no doubtful effect depends on the same quantity. An input, the time or a run is not sufficient: it can
+/// follow an error without a name by chance.
+bool stands_beside(const Evidence& evidence, const Pool& pool, std::size_t item,
+                   const std::vector<std::size_t>& doubtful);
+
 }  // namespace vernier::diagnose

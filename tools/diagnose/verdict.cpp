@@ -145,7 +145,9 @@ class Decision {
            where_left(answer_.left);
   }
 
-  std::string pieces() { return pieces_.empty() ? "" : pieces_in_words(names_of(pieces_)); }
+  std::string pieces() {
+    return pieces_.empty() ? "" : or_rest("", pieces_in_words(names_of(pieces_)), pieces_);
+  }
 
   /// u states the whole uncertainty of a reading. If named effects leave a drift that u does not contain, the
   /// drift may be another error of the machine that no recorded quantity follows. An input, the time or the
@@ -213,10 +215,31 @@ class Decision {
 
   /// One of the accepted effects cannot be what its name states.
   std::string shape_contradicts() {
+    std::vector<std::size_t> doubtful;
+    std::string why;  // of the first one
     for (const std::size_t item : accepted_)
       if (const std::string doubt = doubt_of_shape(finder_.evidence(), pool_, accepted_, item);
-          !doubt.empty())
-        return "The residual is reduced to the noise, but the cause cannot be named: " + doubt + ".";
+          !doubt.empty()) {
+        if (doubtful.empty()) why = doubt;
+        doubtful.push_back(item);
+      }
+    if (doubtful.empty()) return {};
+    return or_rest("The residual is reduced to the noise, but the cause cannot be named: ", why + ".",
+                   doubtful);
+  }
+
+  /// Returns the reason why no cause is named; or nothing, if the first effect stays a cause whatever the
+  /// doubtful ones are. The reason is then that of the rest.
+  std::string or_rest(const std::string& begin, const std::string& why,
+                      const std::vector<std::size_t>& doubtful) {
+    const auto stands = [&](std::size_t item) {
+      return stands_beside(finder_.evidence(), pool_, item, doubtful);
+    };
+    if (!stands(accepted_.front())) return begin + why;
+    for (std::size_t i = 0; i < accepted_.size(); ++i)
+      if (!stands(accepted_[i])) answer_.ladder[i + 1].certain = false;
+    if (rest_.empty()) rest_ = " The other part of the error has no certain cause: " + why;
+    doubtful_.insert(doubtful_.end(), doubtful.begin(), doubtful.end());
     return {};
   }
 
@@ -225,6 +248,7 @@ class Decision {
   std::string other_periods() {
     std::string text;
     for (const std::size_t item : accepted_) {
+      if (std::find(doubtful_.begin(), doubtful_.end(), item) != doubtful_.end()) continue;
       const std::vector<double> aliases = finder_.aliases_of(item);
       if (aliases.empty()) continue;
       const auto listed = std::find(found_.listed.begin(), found_.listed.end(), item);
@@ -234,7 +258,7 @@ class Decision {
         text = aliases_in_words(pool_.candidate(item), pool_[item].scored.scanned.front(), aliases,
                                 found_.machine.axes[*pool_.candidate(item).choice.axis]);
     }
-    return text;
+    return text.empty() ? text : text + rest_;
   }
 
   std::string several_causes() {
@@ -247,10 +271,12 @@ class Decision {
     if (or_set_up) answer_.instrument = "set-up";
     if (or_day) answer_.instrument = "drift";
     return fmt::format(
-        "{} causes explain these data equally well; the most likely cause is {}.{}{}",
-        1 + others + (or_set_up || or_day ? 1 : 0), pool_.candidate(accepted_.front()).spoken,
-        or_set_up ? " An instrument that was set up anew between the runs is a further possible cause." : "",
-        or_day ? " An instrument that drifts with the time of day is a further possible cause." : "");
+               "{} causes explain these data equally well; the most likely cause is {}.{}{}",
+               1 + others + (or_set_up || or_day ? 1 : 0), pool_.candidate(accepted_.front()).spoken,
+               or_set_up ? " An instrument that was set up anew between the runs is a further possible cause."
+                         : "",
+               or_day ? " An instrument that drifts with the time of day is a further possible cause." : "") +
+           rest_;
   }
 
   std::string one_cause() {
@@ -260,7 +286,7 @@ class Decision {
                        other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
                        other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size());
     if (!is_noise_) text += " The remaining residual is not noise." + where_left(answer_.left);
-    return text;
+    return text + rest_;
   }
 
   // What the rules need.
@@ -497,6 +523,8 @@ class Decision {
   const model::Measurement rows_;  // for the machine at the end of the stepwise model
   bool is_noise_ = false;          // is the residual at that end noise?
   std::vector<std::size_t> pieces_;
+  std::vector<std::size_t> doubtful_;  // effects beside a named one that cannot be what their names state
+  std::string rest_;                   // why
   std::string step_;  // sentence about rows that step together, if the residual of the other rows is noise
 };
 

@@ -197,6 +197,7 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
                               {"check_rms_urad", text::or_null(step.check_rms_urad)},
                               {"confirmed", step.confirmed ? Json(*step.confirmed) : Json(nullptr)},
                               {"evidence", text::or_null(step.evidence)},
+                              {"certain", given ? Json(nullptr) : Json(step.certain)},
                               {"chi2_per_dof", step.chi_square_per_freedom}});
   }
   json["causes"] = Json::array();

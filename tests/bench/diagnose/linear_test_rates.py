@@ -57,14 +57,14 @@ def survey(draw, folder, hidden, beside):
 
 def periods_of(answer):
     """Periods of the first causes and of the steps of the stepwise model."""
-    texts = [step.get("add") or "" for step in answer.get("ladder", [])]
+    texts = [step.get("add") or "" for step in answer.get("ladder", []) if step.get("certain")]
     return ([c.get("period", {}).get("value", 0) for c in answer.get("causes", []) if c["effect"] == "cyclic-error"] +
             [float(found[1]) for found in (re.search(r"^cyclic-error:.*start\.p=([\d.e+-]+)", text) for text in texts) if found])
 
 
 def named_beside(answer):
     """Does the ladder contain the lead error and the reversal error?"""
-    return {"scale-error", "backlash"} <= {step.get("effect") for step in answer.get("ladder", [])}
+    return {"scale-error", "backlash"} <= {step.get("effect") for step in answer.get("ladder", []) if step.get("certain")}
 
 
 def judged(answer, period, beside):

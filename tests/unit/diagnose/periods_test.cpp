@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <random>
+#include <set>
 
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/propose/enumerate.h"
@@ -170,6 +172,75 @@ TEST(FinePeriods, OfUnevenTargetsAreNamedOrListed) {
   }
   EXPECT_GT(named, 0) << "seed " << kSeed;
   EXPECT_LT(open, kSurveys / 2) << "seed " << kSeed;
+}
+
+/// A linear test as ISO 230-2 describes it: 13 uneven targets, five approaches from both sides, u 1 um, with
+/// a lead error and a reversal error, and `error_mm` besides.
+Diagnosis linear_test(const std::function<double(double)>& error_mm, std::mt19937_64& random) {
+  constexpr int kTargets = 13, kApproaches = 5;
+  constexpr double kLead = 60e-6, kReversal_mm = 0.006;
+  std::uniform_real_distribution<double> off(-10, 10);
+  std::normal_distribution<double> noise(0, kNoise_mm);
+  std::vector<double> targets;
+  for (int i = 0; i < kTargets; ++i) targets.push_back(std::round(1e3 * (90.0 * i + 40 + off(random))) / 1e3);
+  std::string text = "X[mm],dirX,x[mm],u[um],run\n";
+  for (int run = 0; run < kApproaches; ++run)
+    for (int i = 0; i < 2 * kTargets; ++i) {
+      const int dir = i < kTargets ? 1 : -1;
+      const double x = targets[static_cast<std::size_t>(dir > 0 ? i : 2 * kTargets - 1 - i)];
+      text += fmt::format("{:.3f},{},{:.6f},1,r{}\n", x, dir,
+                          x + kLead * x + kReversal_mm / 2 * dir + error_mm(x) + noise(random), run);
+    }
+  return diagnosed(text);
+}
+
+/// GIVEN a lead error, a reversal error and a cyclic error of one axis WHEN 13 targets are read THEN the
+/// search names all three: a curve through 13 positions follows the cyclic error, and must not hide its
+/// period.
+TEST(FinePeriods, BesideALeadErrorAndAReversalErrorAreFound) {
+  constexpr int kSurveys = 8;
+  std::mt19937_64 random(kSeed + 2);
+  int all_three = 0;
+  for (int k = 0; k < kSurveys; ++k) {
+    const Diagnosis answer = linear_test([](double x) { return 0.004 * wave(x, 10); }, random);
+    std::set<std::string> effects;
+    for (const LadderStep& step : answer.ladder) effects.insert(step.effect);
+    const bool period = std::any_of(answer.candidates.begin(), answer.candidates.end(), [](const auto& one) {
+      return one.accepted && one.candidate.choice.effect->id == "cyclic-error" &&
+             std::any_of(one.parameters.begin(), one.parameters.end(), [](const ParameterEstimate& p) {
+               return p.name.ends_with("_p") && std::abs(p.value - 10) < 0.05;
+             });
+    });
+    all_three += answer.verdict == Verdict::kMissingEffect && period && effects.contains("scale-error") &&
+                         effects.contains("backlash")
+                     ? 1
+                     : 0;
+  }
+  EXPECT_GE(all_three, kSurveys - 2) << "seed " << kSeed + 2;
+}
+
+/// GIVEN another error at each target WHEN 13 targets are read THEN no period of it is certain, and the
+/// reversal error, where it is named, is named alone.
+TEST(FinePeriods, AReversalErrorStandsBesideAPatternWithoutAName) {
+  constexpr int kSurveys = 8;
+  std::mt19937_64 random(kSeed + 3);
+  std::normal_distribution<double> at_target(0, 0.003);
+  int alone = 0;
+  for (int k = 0; k < kSurveys; ++k) {
+    std::map<double, double> error_mm;
+    const Diagnosis answer = linear_test(
+        [&](double x) { return error_mm.try_emplace(x, at_target(random)).first->second; }, random);
+    if (answer.verdict != Verdict::kMissingEffect) continue;
+    for (std::size_t i = 1; i < answer.ladder.size(); ++i)
+      EXPECT_FALSE(answer.ladder[i].certain && answer.ladder[i].effect == "cyclic-error")
+          << "survey " << k << ": " << answer.explanation;
+    if (answer.ladder.at(1).effect != "backlash" || answer.ladder.size() < 3 || answer.ladder[2].certain)
+      continue;
+    ++alone;
+    EXPECT_NE(answer.explanation.find("The other part of the error has no certain cause"), std::string::npos)
+        << answer.explanation;
+  }
+  EXPECT_GT(alone, 0) << "seed " << kSeed + 3;
 }
 
 /// Thirteen targets, a smooth lead error beside a period of 11.4 mm: one short period explains both together

@@ -184,9 +184,13 @@ class Improver {
   }
 
   /// Returns the number of steps that no other cause explains. If the verdict is ambiguous because of other
-  /// periods of a later step, the steps before it are certain.
+  /// periods of a later step, the steps before it are certain. The same applies to a later step whose shape
+  /// is not confirmed.
   static std::size_t certain_steps(const diagnose::Diagnosis& d) {
-    if (d.verdict == diagnose::Verdict::kMissingEffect) return d.ladder.size() - 1;
+    if (d.verdict == diagnose::Verdict::kMissingEffect)
+      return static_cast<std::size_t>(
+          std::find_if(d.ladder.begin() + 1, d.ladder.end(), [](const auto& step) { return !step.certain; }) -
+          d.ladder.begin() - 1);
     if (d.verdict != diagnose::Verdict::kAmbiguous || d.causes.size() > 1) return 0;
     std::size_t certain = 0;
     while (certain + 1 < d.ladder.size()) {
@@ -194,7 +198,9 @@ class Improver {
       const auto found = std::find_if(d.candidates.begin(), d.candidates.end(), [&](const auto& candidate) {
         return candidate.accepted && candidate.add == step.add;
       });
-      if (!step.confirmed.value_or(false) || found == d.candidates.end() || !found->aliases.empty()) break;
+      if (!step.certain || !step.confirmed.value_or(false) || found == d.candidates.end() ||
+          !found->aliases.empty())
+        break;
       ++certain;
     }
     return certain;
