@@ -155,13 +155,19 @@ std::string assignments_to_try(const sheet::SheetTable& table, const std::vector
   });
   std::string position, reading, unit;
   bool actual = false, correction = false;
+  const auto has = [&](Guess::Bare kind) {
+    return std::any_of(table.headings.begin(), table.headings.end(),
+                       [&](const sheet::Heading& one) { return Guess::bare(one.name) == kind; });
+  };
+  const bool shown = !has(Guess::Bare::kTarget) && has(Guess::Bare::kActual);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name) ||
         guess.is_motion(column.name) || is_sense(column.name) || is_known_name(column.name) ||
         names_counting(table.headings[k]))
       continue;
-    const Guess::Bare bare = Guess::bare(table.headings[k].name);
+    Guess::Bare bare = Guess::bare(table.headings[k].name);
+    if (bare == Guess::Bare::kDisplay && shown) bare = Guess::Bare::kTarget;
     if (bare == Guess::Bare::kTarget && axis == columns.end() && position.empty()) {
       position =
           fmt::format("--column \"{}={}\" ", column.unit.empty() ? "X[mm]" : "X", table.headings[k].text);
