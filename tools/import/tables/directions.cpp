@@ -67,7 +67,7 @@ struct Steps {
   /// 1, -1: nearly all steps go in one direction. A table of several lines steps back at the end of each
   /// line.
   int direction() const {
-    constexpr std::size_t kFewest = 2, kTimes = 3;
+    constexpr std::size_t kFewest = 2, kTimes = 3;  // steps in all; times as many in the one direction
     if (up + down < kFewest) return 0;
     return up > kTimes * down ? 1 : down > kTimes * up ? -1 : 0;
   }

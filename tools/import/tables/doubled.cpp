@@ -63,7 +63,7 @@ std::vector<Row> rows_of(const sheet::Sheet& sheet, const sheet::SheetTable& tab
 
 /// The first row whose deviation is not measured - target to the last decimal; nullptr: all rows agree.
 const Row* contradiction(const std::vector<Row>& rows, double sign) {
-  constexpr double kRounding = 1e-9;
+  constexpr double kRounding = 1e-9;  // of binary numbers, mm
   for (const Row& row : rows)
     if (std::abs(row.moved - sign * row.deviation) > row.step * (1 + kRounding) + kRounding) return &row;
   return nullptr;
