@@ -37,7 +37,7 @@ function compiled(key, translation) {
     .split(/([#*])/)
     .map((part) => (part === '#' ? `(${kNumber})` : part === '*' ? '(.+?)' : escaped(part)))
     .join('');
-  return { form: new RegExp(`^${source}$`, 's'), translation, sentences: kBetweenSentences.test(key) };
+  return { form: new RegExp(`^${source}$`, 's'), translation, sentences: /[.!?] [A-Z\d*#]/.test(key) };
 }
 
 /** From now on t() translates; without a catalogue every text stays as it is. */
