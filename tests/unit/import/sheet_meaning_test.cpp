@@ -63,6 +63,9 @@ const Case kCases[] = {
      "another value: the two columns contradict each other. Read one of them: --leave \"Ist X [mm]\" or "
      "--leave "
      "\"Fehler X [um]\""},
+    {"MeanDeviationBesideTheActual",
+     "Soll X [mm];Ist X [mm];Mittlere Abweichung X [um]\n0;0,001;2\n0;0,003;2\n9;9,001;1\n",
+     "X[mm],x[mm]\n0,0.001\n0,0.003\n9,9.001\n"},
     // Thousands.
     {"ThePositionBesideDecides", "X [mm];x [mm]\n0;0.001\n500;500.002\n1.000;1000.002\n",
      "X[mm],x[mm]\n0,0.001\n500,500.002\n1000,1000.002\nnote: \"X [mm]\": 1 cell such as \"1.000\" (line 4) "
@@ -178,6 +181,16 @@ TEST(SheetMeaningRemedy, NennmassAndIstmassWithoutAnAxisNameTheWorkingAssignment
   SheetWords words;
   words.columns = {"X=Nennmaß [mm]", "x=Istmaß [mm]"};
   EXPECT_EQ(read(table, words), "X[mm],x[mm]\n0,0.001\n100,100.002\n");
+}
+
+TEST(SheetMeaningRemedy, ErrorsForthAndBackWithoutAnAxisNameTheWorkingAssignment) {
+  const std::string table = "Position;Fehler vor;Fehler zurück\n0;1,2;3,4\n100;2,2;4,1\n";
+  EXPECT_THAT(read(table), HasSubstr("such as --column \"X[mm]=Position\" --deviation \"X[um]=Deviation\""));
+  SheetWords words;
+  words.columns = {"X[mm]=Position"};
+  words.deviations = {"X[um]=Deviation"};
+  EXPECT_EQ(read(table, words),
+            "X[mm],dirX,run,x[mm]\n0,1,1,0.0012\n100,1,1,100.0022\n0,-1,1,0.0034\n100,-1,1,100.0041\n");
 }
 
 TEST(SheetMeaningRemedy, AStraightnessWithoutASymbolIsNotPutOnOneAxis) {

@@ -179,6 +179,14 @@ std::string assignments_to_try(const sheet::SheetTable& table, const std::vector
     }
   }
   const std::string name = axis == columns.end() ? "X" : axis->name;
+  const auto open = std::find_if(columns.begin(), columns.end(), [](const SheetColumn& column) {
+    return column.use == SheetColumn::Use::kLeft && column.name.empty() &&
+           column.why.find("the axis of this deviation is not known") == 0;
+  });
+  if (open != columns.end() && !actual)
+    return fmt::format("{}--deviation \"{}{}={}\"{}", position, name, open->unit.empty() ? "[um]" : "",
+                       table.headings[static_cast<std::size_t>(open - columns.begin())].text,
+                       open->unit.empty() ? "; [um] is an example: state the unit of the values" : "");
   if (reading.empty()) reading = "HEADING";
   const std::string which = unit.empty() ? "; [mm] and [um] are examples: state the unit of the values" : "";
   if (correction)

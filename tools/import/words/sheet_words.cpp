@@ -43,9 +43,9 @@ const WordSet kTiltWords = {"pitch",      "yaw",        "roll",   "nicken", "nic
 const WordSet kCountingWords = {"nr",    "no",    "num",    "nummer", "number", "index", "idx",       "id",
                                 "lfd",   "punkt", "punkte", "point",  "points", "pt",    "messpunkt", "row",
                                 "zeile", "#",     "n",      "pos.nr", "posnr",  "sample"};
-const WordSet kStatisticWords = {"mittel", "mittelwert", "mittelwerte",       "mean",  "average",
-                                 "avg",    "mw",         "durchschnitt",      "stdev", "stdabw",
-                                 "stabw",  "spannweite", "standardabweichung"};
+const WordSet kStatisticWords = {"mittel", "mittelwert", "mittelwerte", "mittlere",   "mittl",
+                                 "mean",   "average",    "avg",         "mw",         "durchschnitt",
+                                 "stdev",  "stdabw",     "stabw",       "spannweite", "standardabweichung"};
 const WordSet kForthWords = {"1",   "+1",  "+",        "forward", "fwd",    "forth",
                              "up",  "pos", "positive", "positiv", "vor",    "vorwärts",
                              "hin", "auf", "plus",     "cw",      "\u2191", "\u2192"};
