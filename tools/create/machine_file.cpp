@@ -266,7 +266,7 @@ std::string tables_text(const MachinePlan& plan) {
     text += fmt::format(
         "      <table axis=\"{}\" fit=\"{}\">\n", axis.name,
         plan.positioning_only ? kColumns[axis.along() + (axis.rotary() ? 3 : 0)] : "X Y Z rX rY rZ");
-    for (const double loc : round_stations(axis.min, axis.max, axis.rotary()))
+    for (const double loc : stations_of(axis))
       text += fmt::format(
           "        <station loc=\"{}\" X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>\n", number(loc));
     text += "      </table>\n";

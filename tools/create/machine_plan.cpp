@@ -221,6 +221,54 @@ PlannedAxis parse_planned_axis(const std::string& words) {
   return axis;
 }
 
+void plan_stations(std::vector<PlannedAxis>& axes, const std::string& words) {
+  constexpr std::size_t kMost = 2000;  // stations: a table of a longer travel needs another model
+  const auto refuse = [&](const std::string& why) {
+    throw text::InputError(fmt::format(
+        "--stations {}: {}; give NAME=STEP or NAME=POSITION,POSITION,..., such as X=25 or X=0,50,600", words,
+        why));
+  };
+  const auto equals = words.find('=');
+  if (equals == std::string::npos) refuse("the sign = is missing");
+  const std::string name = words.substr(0, equals);
+  const auto axis =
+      std::find_if(axes.begin(), axes.end(), [&](const PlannedAxis& one) { return one.name == name; });
+  if (axis == axes.end()) refuse(fmt::format("the machine has no axis {}", name));
+  std::vector<double> numbers;
+  for (const std::string& part : text::parts_of(words.substr(equals + 1), ',')) {
+    const auto number = text::parse_number(part);
+    if (!number) refuse(fmt::format("\"{}\" is not a number", part));
+    numbers.push_back(*number);
+  }
+  std::vector<double> stations = {axis->min};
+  const auto add = [&](double at) {
+    if (at > stations.back() + 1e-6 && at < axis->max - 1e-6) stations.push_back(std::round(at * 1e6) / 1e6);
+  };
+  if (numbers.size() == 1) {
+    const double step = numbers.front(), travel = axis->max - axis->min;
+    if (!(step > 0)) refuse("a step is greater than 0");
+    if (travel / step > kMost) refuse(fmt::format("a table has at most {} stations", kMost));
+    // Multiples of the step; a last part below a third of it joins its neighbour, as in round_stations.
+    for (double at = std::ceil(axis->min / step + 0.35) * step; at < axis->max - 0.35 * step; at += step)
+      add(at);
+  } else {
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      if (k > 0 && numbers[k] <= numbers[k - 1]) refuse("the positions must increase");
+      if (numbers[k] < axis->min - 1e-6 || numbers[k] > axis->max + 1e-6)
+        refuse(fmt::format("{} is outside the travel {} to {}", text::number_text(numbers[k]),
+                           text::number_text(axis->min), text::number_text(axis->max)));
+      add(numbers[k]);
+    }
+    if (numbers.size() > kMost) refuse(fmt::format("a table has at most {} stations", kMost));
+  }
+  stations.push_back(axis->max);
+  axis->stations = std::move(stations);
+}
+
+std::vector<double> stations_of(const PlannedAxis& axis) {
+  return axis.stations.empty() ? round_stations(axis.min, axis.max, axis.rotary()) : axis.stations;
+}
+
 PlannedArtefact parse_planned_artefact(const std::string& words) {
   const auto colon = words.rfind(':');
   if (colon == std::string::npos || colon == 0 || !model::artefact_type_named(words.substr(colon + 1)))

@@ -17,6 +17,7 @@ struct PlannedAxis {
   char direction = 'X';
   bool rollover = false;           // true: the axis rotates without limit, and its range is one turn
   std::array<double, 3> centre{};  // centre of a rotary axis with all other axes at zero, mm
+  std::vector<double> stations{};  // stations of the table as the user states them; empty: round_stations
   bool rotary() const { return direction >= 'A' && direction <= 'C'; }
   /// Returns the index of the direction: 0, 1, 2 for X, Y, Z, and also for A, B, C.
   std::size_t along() const { return static_cast<std::size_t>(direction - (rotary() ? 'A' : 'X')); }
@@ -61,6 +62,14 @@ const std::vector<MachineType>& machine_types();
 /// Reads an axis from a text: "X:0:600", "U:0:300:X" (along X), "C:0:360:wrap". Throws InputError with the
 /// wrong word.
 PlannedAxis parse_planned_axis(const std::string& words);
+
+/// Gives an axis the stations of a text: "X=25" (a step, in mm or deg) or "X=0,50,130,600" (positions). The
+/// ends of the travel are stations too. Throws InputError for an unknown axis, a step that is not positive,
+/// positions that do not increase or are outside the travel, or more than 2000 stations.
+void plan_stations(std::vector<PlannedAxis>& axes, const std::string& words);
+
+/// Returns the stations of the table of an axis.
+std::vector<double> stations_of(const PlannedAxis& axis);
 
 /// Reads an artefact from a text: "bed:plane". Throws InputError if the name or a known type is missing.
 PlannedArtefact parse_planned_artefact(const std::string& words);

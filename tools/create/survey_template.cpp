@@ -88,10 +88,21 @@ class Rows {
     text_ += empty_ + run + "," + (check ? format::kCheckRole : format::kFitRole) + "\n";
   }
 
+  /// The stations of the table of an axis that are in its range of work; round positions without a table.
+  std::vector<double> stations_along(std::size_t axis) const {
+    const auto [low, high] = range_[axis];
+    std::vector<double> stations;
+    for (const model::Table& table : machine_.tables)
+      for (std::size_t k = 0; table.axis == axis && k < table.stations.size(); ++k)
+        if (table.stations[k].loc >= low && table.stations[k].loc <= high)
+          stations.push_back(table.stations[k].loc);
+    return stations.size() > 1 ? stations : round_stations(low, high, machine_.axes[axis].rotary);
+  }
+
   /// One axis over its travel and back, the others in the middle.
   void alone(std::size_t axis) {
     const model::Axis& moving = machine_.axes[axis];
-    std::vector<double> stations = round_stations(range_[axis][0], range_[axis][1], moving.rotary);
+    std::vector<double> stations = stations_along(axis);
     if (moving.rollover) stations.pop_back();  // one turn further on: the first again
     for (const int sense : {1, -1}) {
       for (const double station : stations) {

@@ -256,6 +256,35 @@ bool is_below_noise(const SeenBesideThings& seen, const Convention& convention, 
   return std::sqrt(seen.squares[at]) * convention.most[at] < noise;
 }
 
+/// An axis that moved by less than this share of the distance of its stations did not measure its table: a
+/// bed mesh moves Z by the height of the bed. The slope between two stations would follow any error of the
+/// model, with this share as its lever, and the correlation would carry it along the whole axis.
+constexpr double kStillShare = 0.1;
+
+/// True for the tables whose axis hardly moved in the rows of the fit.
+std::vector<char> still_tables(const model::Machine& machine, const model::Measurement& rows) {
+  std::vector<char> still;
+  for (const model::Table& table : machine.tables) {
+    const model::Column& position = rows.states.axis[table.axis];
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (std::size_t row = 0; row < rows.rows(); ++row) {
+      if (rows.check[row] != 0) continue;
+      least = std::min(least, position[static_cast<Eigen::Index>(row)]);
+      most = std::max(most, position[static_cast<Eigen::Index>(row)]);
+    }
+    double widest = 0;  // of the intervals that the positions touch
+    for (std::size_t k = 1; k < table.stations.size(); ++k)
+      if (table.stations[k].loc >= least && table.stations[k - 1].loc <= most)
+        widest = std::max(widest, table.stations[k].loc - table.stations[k - 1].loc);
+    if (widest == 0 && table.stations.size() > 1) {  // outside the table, where its end applies
+      const std::size_t k = most < table.stations.front().loc ? 1 : table.stations.size() - 1;
+      widest = table.stations[k].loc - table.stations[k - 1].loc;
+    }
+    still.push_back(most - least < kStillShare * widest ? 1 : 0);
+  }
+  return still;
+}
+
 /// Enlarges the scales of parameters whose effect the unknown places of touched objects absorb: an error that
 /// the readings show by the share f is as large as the residual divided by f, at most kMostError. A parameter
 /// is unseen if even the largest error changes the readings by less than their noise in total: what its
@@ -278,6 +307,11 @@ void enlarge_absorbed(const model::Machine& centre, const model::Measurement& ro
         std::min(times * convention.scale[at], convention.scale[at] / std::max(seen.share[at], 1e-12));
     if (is_below_noise(seen, convention, at, noise)) convention.unseen[i] = 1;
   }
+  const std::vector<char> still = still_tables(centre, rows);
+  convention.still.assign(parameters.size(), 0);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].kind == model::ParameterKind::kStation && still[parameters[i].item] != 0)
+      convention.still[i] = convention.unseen[i] = 1;
 }
 
 }  // namespace
@@ -291,7 +325,7 @@ bool see_again(const model::Machine& machine, const Eigen::VectorXd& point, cons
   const SeenBesideThings seen = seen_beside_things(fitted, rows, parameters);
   bool more = false;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (convention.unseen[i] == 0 ||
+    if (convention.unseen[i] == 0 || convention.still[i] != 0 ||
         is_below_noise(seen, convention, static_cast<Eigen::Index>(i), noise_of(rows, convention)))
       continue;
     convention.unseen[i] = 0;

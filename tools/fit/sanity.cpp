@@ -120,6 +120,18 @@ void add_mistakes_of_positions(const model::Machine& machine, std::vector<Mistak
       for (const auto& [unit, factor] : kLengthUnits) scaled(unit, factor);
     }
   }
+  const auto rotary = std::count_if(machine.axes.begin(), machine.axes.end(),
+                                    [](const model::Axis& axis) { return axis.rotary; });
+  if (rotary < 2) return;
+  std::vector<std::size_t> all;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a)
+    if (machine.axes[a].rotary) all.push_back(a);
+  for (const auto& [what, factor] : {std::pair("in radians", maths::kDegPerRad),
+                                     std::pair("degrees taken for radians", 1 / maths::kDegPerRad)})
+    list.push_back({fmt::format("the positions of all rotary axes look as if they were {}", what),
+                    [all, factor = factor](model::Measurement& rows) {
+                      for (const std::size_t a : all) rows.states.axis[a] *= factor;
+                    }});
 }
 
 std::vector<Mistake> mistakes_of(const model::Machine& machine, const model::Measurement& rows) {
@@ -422,6 +434,14 @@ std::string moved_between_files(const model::Machine& machine, const model::Meas
         convention_of(machine, model::select_rows(rows, of_file), model::ParameterSet()).misfit_mm;
     if (!(alone < kFivefold * misfit_mm)) return {};
   }
+  // Words in `setup` would separate the touched objects, and with them what the files have in common.
+  if (!rows.things.empty())
+    return fmt::format(
+        "each file agrees with the machine alone, but not together: the touched object has another height or "
+        "tilt in {} than in {} (bed screws, height of the probe). If the object was moved between the files, "
+        "fit each file alone; otherwise correct the heights of one file by the difference{}",
+        rows.files[1], rows.files[0],
+        has_uncertainty(rows) ? "" : ". State the standard uncertainty u of the touches");
   return fmt::format(
       "each file agrees with the machine alone, so the instrument had different positions; the "
       "rows of {} and {} share one BaseShift: give them different words in a column \"setup\"",

@@ -127,6 +127,9 @@ struct Convention {
   /// Flags of the parameters that no reading shows, because the fitted values of the touched objects explain
   /// their effect. The remaining effect is noise. `unseen` is empty if no rows touch objects.
   std::vector<char> unseen;
+  /// True for the entries of a table whose axis hardly moved while objects were touched:
+  /// they are unseen, whatever the fitted machine is. Empty if no rows touch objects.
+  std::vector<char> still;
   std::vector<bool> unseen_turn;  // true: rotation of a set-up that affects the readings only in second order
 };
 

@@ -13,6 +13,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/lint/dense_points.h"
 #include "tools/model/chain/thing_shape.h"
 #include "tools/text/numbers.h"
 #include "tools/text/similar.h"
@@ -37,6 +38,7 @@ class Meaning {
     look_at_repeats();
     look_at_scale();
     look_at_sizes();
+    look_at_stations();
     for (const LintColumn& column : table_.columns) look_for_wild_cells(column);
   }
 
@@ -284,6 +286,19 @@ class Meaning {
                               fmt::format("the same row as line {}, to the last digit", line(first->second)),
                               "was the row copied? The fit counts both rows as independent readings");
     }
+  }
+
+  /// Are the stations of a table much farther apart than the points of this survey?
+  void look_at_stations() {
+    if (machine_ == nullptr) return;
+    std::vector<std::vector<double>> positions;
+    for (const model::Axis& axis : machine_->axes) {
+      const LintColumn* const column = table_.find(axis.name);
+      positions.push_back(column == nullptr ? std::vector<double>() : column->value);
+    }
+    for (const DensePoints& points : dense_points(*machine_, positions))
+      findings_.remark(table_.header_line, points.axis, dense_points_text(points),
+                       dense_points_remedy(points));
   }
 
   /// Are measured points as far apart as the machine was sent? A factor of 1000 or 25.4 is a unit.

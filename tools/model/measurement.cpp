@@ -899,7 +899,25 @@ Measurement select_rows(const Measurement& all, const std::vector<std::size_t>& 
   return result;
 }
 
+namespace {
+
+/// A file without a column `t` beside files with one has times of its own: its rows are not at 0 s of the
+/// other clock.
+void keep_clocks_apart(Measurement& all, Measurement& next) {
+  if (all.has_recorded(columns::kTime) == next.has_recorded(columns::kTime)) return;
+  for (Measurement* const m : {&all, &next}) {
+    if (m->has_recorded(columns::kTime)) continue;
+    Labels& clock = m->states.clock;
+    if (clock.of.empty()) clock = {m->states.run, m->states.run_names};
+    for (std::string& name : clock.names)
+      name = fmt::format("{} without {}", m->files.back(), columns::kTime);
+  }
+}
+
+}  // namespace
+
 void append_measurement(Measurement& all, Measurement next, bool apart) {
+  keep_clocks_apart(all, next);
   append_candidates(all, next);
   append_corrections(all, next);
   append_labels_of_rows(all, next);

@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "tools/sheet/sheet_number.h"
-#include "tools/sheet/workbook.h"
 #include "tools/text/csv.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
@@ -274,6 +273,9 @@ void settle_decimal(Sheet& sheet, const std::vector<std::vector<char>>& is_numbe
   sheet.decimal_known = decimal_comma.has_value() || texts.decimal_known;
   if (sheet.decimal_comma)
     each_number(sheet, [](std::string& cell) { std::replace(cell.begin(), cell.end(), '.', ','); });
+  each_number(sheet, [&](const std::string& cell) {
+    if (cell.find_first_of(".,") != std::string::npos) sheet.exact.insert(cell);
+  });
 }
 
 /// A cell that makes its row a remark. In a workbook "#1" numbers a row: nobody switches rows off by it.
@@ -287,6 +289,7 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
   sheet.workbook = true;
   sheet.sheet = read.name;
   sheet.sheets = std::move(read.all);
+  sheet.elsewhere = std::move(read.elsewhere);
   if (read.hidden_rows > 0)
     sheet.notes.push_back(
         fmt::format("{} hidden rows are read as well; delete the rows that do not belong to the table",

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "tools/sheet/encoding.h"
+#include "tools/sheet/workbook.h"
 
 namespace vernier::sheet {
 
@@ -45,6 +47,9 @@ struct Sheet {
   std::vector<std::size_t> written;            // number of cells of each row in the text; empty for a
                                                // workbook
   std::vector<Remark> remarks;                 // comments, and lines at the top that were skipped
+  std::vector<TextElsewhere> elsewhere;        // texts on the other visible sheets of a workbook
+  std::set<std::string> exact;                 // cells with a decimal sign that the workbook stores as
+                                               // numbers: their sign separates no thousands
   std::vector<std::string> notes;              // notes for the user about rows that were left out
 };
 

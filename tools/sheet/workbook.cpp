@@ -120,6 +120,7 @@ class Reader {
     }
     if (found) {
       found->all = std::move(names);
+      found->elsewhere = texts_beside(found->name);
       return std::move(*found);
     }
     if (wanted.empty() && !hidden.empty())
@@ -148,6 +149,28 @@ class Reader {
     }
     return rows >= 2;
   }
+
+  /// The texts on the other visible sheets; a sheet that cannot be read has none.
+  std::vector<TextElsewhere> texts_beside(const std::string& name) const {
+    constexpr std::size_t kLongEnough = 5, kMostTexts = 1000;
+    std::vector<TextElsewhere> texts;
+    for (const pugi::xml_node entry : child(workbook_.document_element(), "sheets").children()) {
+      const std::string_view state = entry.attribute("state").value();
+      if (name == entry.attribute("name").value() || state == "hidden" || state == "veryHidden") continue;
+      try {
+        const WorkbookSheet sheet = cells_of(entry);
+        const bool table = is_table(sheet);
+        for (std::size_t i = 0; i < sheet.rows.size(); ++i)
+          for (std::size_t k = 0; k < sheet.rows[i].size() && texts.size() < kMostTexts; ++k)
+            if (sheet.is_number[i][k] == 0 && sheet.rows[i][k].size() >= kLongEnough)
+              texts.push_back({sheet.name, table, sheet.rows[i][k]});
+      } catch (const text::InputError&) {
+        continue;
+      }
+    }
+    return texts;
+  }
+
   void load(pugi::xml_document& document, const std::string& text, const std::string& name) const {
     const auto result =
         document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_ws_pcdata);

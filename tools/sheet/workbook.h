@@ -8,6 +8,13 @@ namespace vernier::sheet {
 /// Largest number of columns in a sheet, by the limit of SpreadsheetML (column XFD).
 inline constexpr std::size_t kMostColumns = 16384;
 
+/// A text on another sheet of the workbook.
+struct TextElsewhere {
+  std::string sheet;
+  bool table = false;  // true: the sheet has rows of numbers; false: a cover sheet
+  std::string text;
+};
+
 /// A sheet of an Office Open XML workbook (ECMA-376 part 1, SpreadsheetML) as text. Numbers have a decimal
 /// point as they are stored; formulas have their last value; dates and times have the form of `date_text`.
 struct WorkbookSheet {
@@ -19,6 +26,7 @@ struct WorkbookSheet {
   std::vector<std::string> all;                // names of all sheets in the workbook
   std::size_t hidden_rows = 0;                 // number of rows that are hidden by a filter or by hand; they
                                                // are included in `rows`
+  std::vector<TextElsewhere> elsewhere;        // texts on the other visible sheets
 };
 
 /// Reads the sheet with this name or number (from 1) from a workbook. If `sheet` is empty, the first visible

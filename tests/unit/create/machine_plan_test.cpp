@@ -154,6 +154,30 @@ TEST(MachinePlan, StationsAreRoundAndFew) {
   }
 }
 
+TEST(MachinePlan, StationsAreThoseOfTheUser) {
+  MachinePlan made = plan("gantry", {"X:0:90", "Y:-10:100", "Z:0:300"});
+  plan_stations(made.axes, "X=25");
+  plan_stations(made.axes, "Y=0,33.5,50");
+  EXPECT_EQ(stations_of(made.axes[0]), (std::vector<double>{0, 25, 50, 75, 90}));
+  EXPECT_EQ(stations_of(made.axes[1]), (std::vector<double>{-10, 0, 33.5, 50, 100}));
+  EXPECT_EQ(stations_of(made.axes[2]), round_stations(0, 300, false));
+  const Machine machine = parse_machine(machine_file(made), "m.xml");
+  ASSERT_EQ(machine.tables.at(0).stations.size(), 5u);
+  EXPECT_EQ(machine.tables.at(0).stations.at(3).loc, 75);
+}
+
+TEST(MachinePlan, StationsThatCannotBeAreRefused) {
+  std::vector<PlannedAxis> list = axes({"X:0:600"});
+  const auto says = [&](const std::string& words) { return refusal([&] { plan_stations(list, words); }); };
+  EXPECT_NE(says("X"), "accepted");
+  EXPECT_NE(says("Q=25").find("the machine has no axis Q"), std::string::npos);
+  EXPECT_NE(says("X=0").find("a step is greater than 0"), std::string::npos);
+  EXPECT_NE(says("X=0.01").find("a table has at most 2000 stations"), std::string::npos);
+  EXPECT_NE(says("X=0,50,20").find("the positions must increase"), std::string::npos);
+  EXPECT_NE(says("X=0,700").find("700 is outside the travel 0 to 600"), std::string::npos);
+  EXPECT_NE(says("X=0;50").find("is not a number"), std::string::npos);
+}
+
 TEST(MachinePlan, DeclaresWhatTheToolTouches) {
   MachinePlan made = plan("gantry", {"X:0:235", "Y:0:235", "Z:0:250"});
   made.artefacts = {parse_planned_artefact("bed:plane"), parse_planned_artefact("a<b:sphere")};

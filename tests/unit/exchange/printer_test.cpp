@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
 #include <random>
 #include <sstream>
 
@@ -12,6 +13,7 @@
 #include "tools/exchange/printer/firmware_files.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain/chain.h"
+#include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
@@ -106,6 +108,44 @@ TEST(PrinterFiles, OfKlipperRemoveSkewAndHeightsByItsOwnFormulas) {
   }
   EXPECT_GT(before, 0.2);
   EXPECT_LT(largest, 0.004);  // second order of 0.1 deg over 200 mm, and 1 um between the points
+}
+
+/// The record of a fit that did not determine these statics: their standard uncertainty is 0.01 rad.
+Machine not_measured(const std::vector<std::string>& statics) {
+  Machine machine = printer();
+  const auto n = static_cast<Eigen::Index>(statics.size());
+  auto record = std::make_shared<FitRecord>();
+  record->parameters = statics;
+  record->open = Eigen::MatrixXd::Identity(n, n) * 0.6;  // deg
+  record->open_known = true;
+  machine.fitted = record;
+  return machine;
+}
+
+TEST(PrinterFiles, ASquarenessThatWasNotMeasuredIsNotWritten) {
+  const auto files = [](const Machine& machine, Firmware firmware, PrinterCorrection& correction) {
+    correction =
+        printer_correction(machine, three_axes(machine), features_of(firmware, {}), at_rest(machine), 1);
+    return firmware_files(firmware, {}, "printer", correction).at(0).text;
+  };
+  PrinterCorrection correction;
+  const Machine none = not_measured({"EC0Y", "EA0Z", "EB0Z"});
+  for (const auto& [firmware, word] :
+       {std::pair(Firmware::kKlipper, "xy_skew"), std::pair(Firmware::kRepRap, "M556"),
+        std::pair(Firmware::kMarlin, "M852")}) {
+    EXPECT_NE(files(printer(), firmware, correction).find(word), std::string::npos) << word;
+    EXPECT_TRUE(correction.unmeasured.empty());
+    EXPECT_EQ(files(none, firmware, correction).find(word), std::string::npos) << word;
+    ASSERT_EQ(correction.unmeasured.size(), 3u);
+  }
+  EXPECT_EQ(correction.unmeasured[0].name, "XY");
+  EXPECT_NEAR(correction.unmeasured[0].std, 0.6 / 57.29578, 1e-3);
+  EXPECT_NEAR(correction.unmeasured[0].um, 190 * 0.6 / 57.29578 * 1000, 200);
+  // One of three: its value is 0, the others are those of the machine.
+  const KlipperFile one(files(not_measured({"EC0Y"}), Firmware::kKlipper, correction));
+  EXPECT_EQ(one.value.at("xy_skew"), 0);
+  EXPECT_NEAR(one.value.at("yz_skew"), std::tan(0.07 / 57.29578), 2e-5);
+  ASSERT_EQ(correction.unmeasured.size(), 1u);
 }
 
 TEST(PrinterErrors, AreThoseOfTheChainWithTheFiles) {

@@ -13,6 +13,7 @@
 #include "tools/fit/coverage/point_readings.h"
 #include "tools/fit/coverage/reach.h"
 #include "tools/fit/fit.h"
+#include "tools/fit/sanity.h"
 #include "tools/maths/alignment.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain/chain.h"
@@ -440,6 +441,56 @@ TEST(Sanity, NamesTheMistakeInTheReadings) {
   typed.observations[40].value = 999876;
   EXPECT_NE(absurd(typed).find("bridge.csv:"), std::string::npos) << absurd(typed);
   EXPECT_NE(absurd(typed).find("is an outlier"), std::string::npos) << absurd(typed);
+}
+
+/// A log of a robot in radians, with headings in degrees: no single joint explains it.
+TEST(Sanity, NamesJointsInRadians) {
+  const Machine arm = parse_machine(
+      R"xml(<machine name="arm"><variables><static><a value="300" nominal="300" unit="mm"/><BaseShift/></static>
+      <machineaxes><P rotary="true" min="-180" max="180"/><Q rotary="true" min="-180" max="180"/>
+      <R rotary="true" min="-180" max="180"/></machineaxes></variables>
+      <transforms branch="tool"><sixdof n="1" rZ="P"/><sixdof n="2" X="a" rY="Q"/><sixdof n="3" X="200" rY="R"/>
+      <sixdof n="4" X="150"/></transforms></machine>)xml",
+      "arm.xml");
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> joint(-120, 120);
+  States states = make_states(40, arm);
+  for (Column& axis : states.axis)
+    for (double& q : axis) q = joint(random);
+  const Eigen::Matrix3Xd points = forward(arm, states).position;
+  std::string csv = "P[deg],Q[deg],R[deg],x[mm],y[mm],z[mm],u[um]\n";
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    csv += fmt::format("{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{:.4f},10\n",
+                       states.axis[0][i] * maths::kRadPerDeg, states.axis[1][i] * maths::kRadPerDeg,
+                       states.axis[2][i] * maths::kRadPerDeg, points(0, i) + 50, points(1, i), points(2, i));
+  const std::string said = fit::fit(arm, parse_measurement(csv, "log.csv", arm)).absurd;
+  EXPECT_NE(said.find("the positions of all rotary axes look as if they were in radians"), std::string::npos)
+      << said;
+  EXPECT_EQ(said.find("a thousand times"), std::string::npos) << said;
+}
+
+/// Two meshes of a bed whose screws were turned: other words in `setup` would separate the beds.
+TEST(Sanity, TwoMeshesOfOneBedAreNoSetUps) {
+  const Machine machine = parse_machine(
+      R"xml(<machine name="p"><variables><static><BaseShift/></static><machineaxes><X/><Y/><Z/></machineaxes>
+      <artefact name="bed" type="plane"/></variables>
+      <transforms><sixdof n="1" X="X" Y="Y" Z="Z"/></transforms></machine>)xml",
+      "p.xml");
+  const auto mesh = [&](double height, const std::string& file) {
+    std::string csv = "X[mm],Y[mm],Z[mm],on\n";
+    for (const int x : {0, 100, 200})
+      for (const int y : {0, 100, 200})
+        csv += fmt::format("{},{},{:.3f},bed\n", x, y, height + 1e-3 * (x % 3));
+    return parse_measurement(csv, file, machine);
+  };
+  Measurement rows = mesh(0, "one.csv");
+  append_measurement(rows, mesh(3, "two.csv"));
+  const std::string said =
+      missing_set_up(machine, rows, convention_of(machine, rows, ParameterSet()).misfit_mm);
+  EXPECT_NE(said.find("the touched object has another height or tilt in two.csv than in one.csv"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(said.find("setup"), std::string::npos) << said;
 }
 
 // A load at one place bends the machine by 10 % of the measured box and 0.6 % of its travel. On a gauge whose

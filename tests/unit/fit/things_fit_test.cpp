@@ -256,6 +256,46 @@ TEST(FitOfThings, ATouchedPlaneIsInTheRecord) {
   EXPECT_NEAR(plane.place_mm[2], 2 + 0.001 * plane.place_mm[0] - 0.002 * plane.place_mm[1], 1e-6);
 }
 
+/// A bed mesh moves Z by the height of the bed only: the table of Z stays at 0 over its whole travel,
+/// although the bed has a shape that the model does not contain.
+TEST(FitOfThings, ATableOfAnAxisThatHardlyMovedStaysAtNominal) {
+  const auto table = [](const std::string& axis, const std::string& columns) {
+    std::string text = "<table axis=\"" + axis + "\" fit=\"" + columns + "\">";
+    for (const int loc : {0, 50, 100, 150, 200, 250})
+      text += fmt::format("<station loc=\"{}\" X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>", loc);
+    return text + "</table>";
+  };
+  const model::Machine printer = model::parse_machine(
+      R"XML(<machine name="printer"><variables><machineaxes><X min="0" max="250"/><Y min="0" max="250"/>
+  <Z min="0" max="250"/></machineaxes><comptables>)XML" +
+          table("X", "Z") + table("Y", "Z rY") + table("Z", "X Y Z rX rY rZ") +
+          R"XML(</comptables><artefact name="bed" type="plane"/></variables><transforms branch="tool">
+  <sixdof n="1" Y="Y" X="lYx" Z="lYz" rX="rYx" rY="rYy" rZ="rYz"/>
+  <sixdof n="2" X="X+lXx" Y="lXy" Z="lXz" rX="rXx" rY="rXy" rZ="rXz"/>
+  <sixdof n="3" X="lZx" Y="lZy" Z="Z+lZz" rX="rZx" rY="rZy" rZ="rZz"/><sixdof n="4" Z="-100"/>
+  </transforms></machine>)XML",
+      "printer.xml");
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0, 0.003);
+  std::string rows = "X[mm],Y[mm],Z[mm],on,u[mm]\n";
+  for (int j = 0; j < 11; ++j)
+    for (int i = 0; i < 11; ++i) {
+      const double xi = 0.2 * i - 1, eta = 0.2 * j - 1;
+      const double z = 0.15 * (1 - xi * xi) + 0.08 * xi * eta + 0.1 * std::sin(3 * xi) * std::cos(4 * eta) +
+                       0.1 * std::exp(-10 * (std::pow(xi - 0.4, 2) + std::pow(eta + 0.3, 2)));
+      rows +=
+          fmt::format("{},{},{:.4f},bed,0.002\n", 125 + 110 * xi, 125 + 110 * eta, 0.2 + z + noise(random));
+    }
+  const FitResult result =
+      vernier::fit::fit(printer, model::parse_measurement(rows, "mesh.csv", printer), {});
+  for (const ParameterEstimate& one : result.estimates) {
+    if (one.name.rfind("table.Z", 0) != 0) continue;
+    EXPECT_EQ(one.value, 0) << one.name;
+    EXPECT_EQ(one.from, Origin::kPrior) << one.name;
+    EXPECT_GT(one.std, 0) << one.name;
+  }
+}
+
 /// An arm without length meets every point: nothing is left of the readings, and it is no result.
 TEST(FitOfThings, AnArmThatCollapsedIsNoResult) {
   std::string text = kArm;

@@ -85,6 +85,17 @@ const Case kCases[] = {
     {"Soll-Ist Soll X [mm]", kHeading, kNothing},
     {"Abweichungen Portal 4 - Laser XL-80", kTitle, kNothing},
     {"Abweichung X-Achse - Laser", kTitle, kNothing},
+    // The sign by the length that the machine travels.
+    {"positiv, wenn zu kurz", kTitle, kNominal},
+    {"positive when short", kTitle, kNominal},
+    {"Bemerkung: + = zu lang", kTitle, kActual},
+    {"zu kurz = +, zu lang = -", kTitle, kNominal},
+    {"negativ, wenn zu kurz; positiv, wenn zu lang", kTitle, kActual},
+    {"Abweichung positiv = Achse fährt zu weit", kTitle, kActual},
+    {"Abw. X (positiv = zu kurz) [um]", kHeading, kNominal},
+    {"positiv, wenn zu kurz; negativ, wenn zu kurz", kTitle, kUnclear},
+    {"kurze Messung, Ergebnis positiv", kTitle, kNothing},
+    {"Taster kurz, Ergebnis positiv", kTitle, kUnclear},
     // A sign that cannot be decided.
     {"Abweichungen Maschine - Laser", kTitle, kUnclear},
     {"Soll-Ist-Abweichung X [um]", kHeading, kUnclear},

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/lint/measurement_lint.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 
+#include "tools/lint/dense_points.h"
 #include "tools/lint/lint.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
@@ -223,6 +225,28 @@ TEST(MeasurementLintOf, FilesOfBothKindsAreLookedAtTogether) {
   EXPECT_EQ(files[1].kind, LintedKind::kMachine);
   EXPECT_TRUE(files[1].usable);
   fs::remove_all(folder);
+}
+
+TEST(MeasurementLintOf, PointsMuchDenserThanTheStationsAreNamed) {
+  const Machine with_table = parse_machine(
+      R"xml(<machine><variables><machineaxes><X min="0" max="600"/><Y min="0" max="400"/></machineaxes>
+      <comptables><table axis="X" fit="X"><station loc="0"/><station loc="200"/><station loc="400"/>
+      <station loc="600"/></table></comptables></variables><transforms><sixdof X="X+lXx" Y="Y"/></transforms></machine>)xml",
+      "m.xml");
+  const auto lint = [&](int step, bool line) {
+    std::string rows = "X[mm],Y[mm],x[mm],u[um]\n", all;
+    for (int x = 0; x <= 600; x += step)
+      rows += fmt::format("{0},{1},{0}.001,1\n", x, line ? 200 : (7 * x) % 400);
+    for (const LintFinding& finding : lint_measurement(rows, "s.csv", &with_table))
+      all += in_one_line(finding) + "\n";
+    return all;
+  };
+  EXPECT_NE(lint(25, true).find("X: 25 positions about 25 mm apart, and the table has stations 200 mm apart"),
+            std::string::npos)
+      << lint(25, true);
+  EXPECT_NE(lint(25, true).find("--stations X=25"), std::string::npos);
+  EXPECT_EQ(lint(100, true).find("positions about"), std::string::npos) << "few points show no curve";
+  EXPECT_EQ(lint(25, false).find("positions about"), std::string::npos) << "poses of both axes are no line";
 }
 
 TEST(ImportCommand, IsGivenForSpreadsheetsOnly) {

@@ -239,5 +239,21 @@ TEST(MeasurementFile, RefusesACorrectionThatItCannotTakeAway) {
   EXPECT_EQ(error_of("X[mm],B[deg],x[mm],corrected\n1,2,3,\n"), "accepted");  // no image ran
 }
 
+TEST(MeasurementFiles, AFileWithoutTimesHasItsOwnClock) {
+  const Machine m = machine();
+  const std::string timed = "X[mm],B[deg],x[mm],t[s]\n1,0,1,380\n2,0,2,388\n",
+                    plain = "X[mm],B[deg],x[mm]\n3,0,3\n4,0,4\n";
+  for (const bool timed_first : {true, false}) {
+    Measurement all = parse_measurement(timed_first ? timed : plain, "a.csv", m);
+    append_measurement(all, parse_measurement(timed_first ? plain : timed, "b.csv", m));
+    EXPECT_NO_THROW(require_time_order(all));
+    EXPECT_NE(all.states.of(all.states.clock, 1), all.states.of(all.states.clock, 2));
+    EXPECT_EQ(all.states.of(all.states.clock, 0), all.states.of(all.states.clock, 1));
+  }
+  Measurement falls = parse_measurement(timed, "a.csv", m);
+  append_measurement(falls, parse_measurement("X[mm],B[deg],x[mm],t[s]\n3,0,3,5\n", "b.csv", m));
+  EXPECT_THROW(require_time_order(falls), InputError);
+}
+
 }  // namespace
 }  // namespace vernier::measurement_test

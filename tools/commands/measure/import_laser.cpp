@@ -5,7 +5,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
-#include "tools/import/tables/laser_file.h"
+#include "tools/import/logs/laser_file.h"
 #include "tools/text/files.h"
 
 namespace vernier::commands::import_cli {

@@ -18,7 +18,7 @@ namespace {
 struct NewArguments {
   std::string type, output, measurements, json, name, tool, dh, urdf, tip, reading = "point", errors = "all";
   std::string tool_side, work_side;
-  std::vector<std::string> axes, centres, joints, artefacts;
+  std::vector<std::string> axes, centres, joints, artefacts, stations;
 };
 
 /// Names the types of machines in the help. It accepts any word: plan_machine gives a reason for a delta.
@@ -119,6 +119,9 @@ create::MachinePlan plan_of(const NewArguments& arguments, const CLI::App& comma
       arguments.urdf.empty() ? plan_of_words(arguments, command) : plan_of_urdf(arguments, command);
   if (!arguments.name.empty()) plan.name = arguments.name;
   plan.positioning_only = arguments.errors == "positioning";
+  if (!plan.arm.empty() && !arguments.stations.empty())
+    throw text::InputError("--stations: this option is not for the type robot, whose axes have no tables");
+  for (const std::string& words : arguments.stations) create::plan_stations(plan.axes, words);
   for (const std::string& words : arguments.artefacts)
     plan.artefacts.push_back(create::parse_planned_artefact(words));
   // Readings of the column `on` need an object: a plane such as the bed of a printer, if none is stated.
@@ -195,6 +198,12 @@ void register_new(CLI::App& vernier) {
       ->add_option("--measurements", arguments->measurements,
                    "also write an empty measurement file for the readings: CSV, or a workbook (.xlsx)")
       ->type_name(kWrites);
+  command
+      ->add_option(
+          "--stations", arguments->stations,
+          "NAME=STEP or NAME=POSITION,POSITION,...: stations of the table of an axis, mm or deg: X=25; "
+          "repeat for each axis (default: 4 to 7 parts of the travel)")
+      ->allow_extra_args(false);
   command
       ->add_option("--errors", arguments->errors,
                    "parameters that a fit may estimate: all, or positioning (errors along each axis, for an "

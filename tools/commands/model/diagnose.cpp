@@ -80,6 +80,23 @@ void print_causes(std::FILE* out, const diagnose::Diagnosis& diagnosis) {
   fmt::print(out, "\n");
 }
 
+/// What to do with effects that reduce the residual, if the verdict names no cause for all of it.
+void print_next_step(std::FILE* out, const diagnose::Diagnosis& d) {
+  if (d.verdict != diagnose::Verdict::kUnexplained || d.candidates.empty()) return;
+  if (d.ladder.size() > 1)
+    fmt::print(
+        out,
+        "next: the option --machine-out NEW writes the machine file with the {} of the stepwise model, "
+        "fitted; the rest of the residual has no name in the catalogue\n",
+        d.ladder.size() == 2 ? "effect" : fmt::format("{} effects", d.ladder.size() - 1));
+  else if (const std::string& add = d.candidates.front().add; !add.empty())
+    fmt::print(
+        out,
+        "next: to try the first candidate, vernier add '{}' MACHINE -o NEW, then vernier fit NEW MEAS -o "
+        "FITTED; keep it only if the check rows improve\n",
+        add);
+}
+
 /// Residuals of the machine of the last step.
 void write_residuals(const DiagnoseArguments& arguments, const diagnose::Diagnosis& diagnosis) {
   const model::Machine machine = model::parse_machine(diagnosis.machine_text, arguments.survey.machine);
@@ -113,6 +130,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   print_ladder(out, diagnosis, m);
   fmt::print(out, "\n");
   print_candidates(out, diagnosis);
+  print_next_step(out, diagnosis);
   for (const std::string& next : diagnosis.next_measurement) fmt::print(out, "measure next: {}\n", next);
 }
 

@@ -14,6 +14,7 @@
 #include "tools/fit/set_up.h"
 #include "tools/fit/size.h"
 #include "tools/format/units.h"
+#include "tools/lint/dense_points.h"
 #include "tools/lint/measurement_meaning.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
@@ -164,6 +165,13 @@ fit::Prior prior_of(const std::string& text) {
   return {text.substr(0, at), *std};
 }
 
+/// The positions of each axis in the rows.
+std::vector<std::vector<double>> positions_of(const model::Measurement& m) {
+  std::vector<std::vector<double>> positions;
+  for (const model::Column& axis : m.states.axis) positions.emplace_back(axis.begin(), axis.end());
+  return positions;
+}
+
 void run_fit(const FitArguments& arguments) {
   const auto [text, machine, m] = read_survey(
       {arguments.machine, arguments.images, arguments.measurements, {}}, [&](const model::Machine& read) {
@@ -196,6 +204,8 @@ void run_fit(const FitArguments& arguments) {
   for (const fit::OtherSetUp& one : fit::files_set_up_elsewhere(result.machine, m))
     fmt::print(stderr, "note: {}; to fit this set-up, give at least three rows of the file the role fit\n",
                one.sentence());
+  for (const lint::DensePoints& points : lint::dense_points(result.machine, positions_of(m)))
+    fmt::print(stderr, "note: {}: {}\n", lint::dense_points_text(points), lint::dense_points_remedy(points));
   print_result(human_stream(arguments.json), result, m);
   results::print_domains(human_stream(arguments.json), json["domains"]);
 }

@@ -82,6 +82,19 @@ void add_left_out_of_bed(std::vector<exchange::LeftOut>& left, const exchange::B
          bed.shape->undetermined_um});
 }
 
+/// Skews and steps that the files do not contain, because the last fit did not measure them.
+void add_unmeasured(std::vector<exchange::LeftOut>& left, const exchange::PrinterCorrection& correction) {
+  for (const exchange::UnmeasuredPart& part : correction.unmeasured) {
+    if (part.um <= exchange::kNothing_um) continue;
+    const bool skew = part.name.size() == 2;
+    left.push_back(
+        {fmt::format("{} {} that the last fit did not measure ({:.3g} +- {:.3g}): the files do not "
+                     "contain it",
+                     skew ? "squareness" : "scale", part.name, part.value, part.std),
+         part.um});
+  }
+}
+
 Json errors_json(const exchange::PrinterErrors& errors) {
   return {{"errors",
            {{"positions", errors.positions},
@@ -124,6 +137,7 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);
   Json extra = errors_json(errors);
   std::vector<exchange::LeftOut> left = remaining(errors.after_um);
+  add_unmeasured(left, correction);
   if (bed) {
     extra["bed"] = bed->name;
     if (bed->shape) extra["bed_shape"] = shape_json(*bed->shape);

@@ -12,6 +12,7 @@
 #include "tools/maths/decompositions.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/fit_record.h"
+#include "tools/model/parameters.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
@@ -75,21 +76,75 @@ Matrix3Xd grid(const ThreeAxes& axes, std::array<std::size_t, 3> count) {
   return points;
 }
 
+/// Skew XY, XZ, YZ and the factors of the steps of X, Y, Z less 1.
+using StraightParts = Eigen::Matrix<double, 6, 1>;
+
 /// Skew and steps. A part of Y that depends on X and the opposite part of X are one turn about Z: the skew is
 /// their sum.
-void fit_straight_parts(PrinterCorrection& correction, const PrinterFeatures& features,
-                        const Matrix3Xd& points, const Matrix3Xd& offset) {
+StraightParts straight_parts(const Matrix3Xd& points, const Matrix3Xd& offset) {
   Eigen::MatrixXd columns(points.cols(), 4);
   columns << points.transpose(), VectorXd::Ones(points.cols());
   const VectorXd x = maths::least_squares(columns, offset.row(0).transpose()),
                  y = maths::least_squares(columns, offset.row(1).transpose()),
                  z = maths::least_squares(columns, offset.row(2).transpose());
-  if (features.skew) {
-    correction.xy = x[1] + y[0];
-    correction.xz = x[2];
-    correction.yz = y[2];
+  return {x[1] + y[0], x[2], y[2], x[0], y[1], z[2]};
+}
+
+/// Standard uncertainty of the straight parts by the parameters that no reading of the last fit determines.
+StraightParts open_std(const model::Machine& machine, const ThreeAxes& axes, const model::States& at) {
+  StraightParts squares = StraightParts::Zero();
+  if (!machine.fitted || !machine.fitted->open_known) return squares;
+  constexpr std::size_t kFewPositions = 3;  // of each axis: the parts are linear in the positions
+  const Matrix3Xd points = grid(axes, {kFewPositions, kFewPositions, kFewPositions});
+  const model::FitRecord& record = *machine.fitted;
+  model::Machine moved = machine;
+  moved.base_shifts.clear();
+  moved.tool_shifts.clear();
+  const model::ParameterSet parameters(moved, {});
+  const VectorXd values = parameters.get(moved);
+  const StraightParts as_fitted = straight_parts(points, needed(moved, axes, points, at));
+  for (Index column = 0; column < record.open.cols(); ++column) {
+    VectorXd shifted = values;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const auto place = std::find(record.parameters.begin(), record.parameters.end(), parameters[i].name);
+      if (place == record.parameters.end()) continue;
+      shifted[static_cast<Index>(i)] +=
+          record.open(static_cast<Index>(place - record.parameters.begin()), column);
+    }
+    parameters.set(moved, shifted);
+    squares += (straight_parts(points, needed(moved, axes, points, at)) - as_fitted).cwiseAbs2();
   }
-  if (features.steps) correction.steps = {1 + x[0], 1 + y[1], 1 + z[2]};
+  return squares.cwiseSqrt();
+}
+
+/// Fits skew and steps, without the parts that the last fit did not measure.
+void fit_straight_parts(PrinterCorrection& correction, const PrinterFeatures& features,
+                        const model::Machine& machine, const ThreeAxes& axes, const model::States& at) {
+  constexpr std::size_t kPositions = 7;  // of each axis
+  // As in the safety sheet: a correction whose standard uncertainty exceeds half of its value may increase
+  // the error.
+  constexpr double kMostShare = 0.5;
+  const Matrix3Xd points = grid(axes, {kPositions, kPositions, kPositions});
+  StraightParts parts = straight_parts(points, needed(machine, axes, points, at));
+  const StraightParts open = open_std(machine, axes, at);
+  const std::array<const char*, 6> names = {"XY", "XZ", "YZ", "X", "Y", "Z"};
+  const std::array<std::size_t, 6> along = {1, 2, 2, 0, 1, 2};  // the axis over which the part adds up
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto i = static_cast<Index>(k);
+    if (!(k < 3 ? features.skew : features.steps) || open[i] <= kMostShare * std::abs(parts[i])) continue;
+    const double travel = axes.high[along[k]] - axes.low[along[k]];
+    correction.unmeasured.push_back(
+        {names[k], parts[i], open[i], 1000 * travel * std::max(std::abs(parts[i]), open[i])});
+    parts[i] = 0;
+  }
+  correction.no_skew = std::count_if(correction.unmeasured.begin(), correction.unmeasured.end(),
+                                     [](const UnmeasuredPart& one) { return one.name.size() == 2; }) == 3;
+  if (features.skew) {
+    correction.xy = parts[0];
+    correction.xz = parts[1];
+    correction.yz = parts[2];
+  }
+  if (features.steps) correction.steps = {1 + parts[3], 1 + parts[4], 1 + parts[5]};
 }
 
 /// Heights at the lowest Z, beside the skew. Z is 0 in the middle: homing sets the offset.
@@ -230,10 +285,8 @@ Matrix3Xd PrinterCorrection::corrected(const Matrix3Xd& commands) const {
 PrinterCorrection printer_correction(const model::Machine& machine, const ThreeAxes& axes,
                                      const PrinterFeatures& features, const model::States& at,
                                      double tolerance_um, const std::optional<Bed>& bed) {
-  constexpr std::size_t kPositions = 7;  // of each axis, for skew and steps
-  const Matrix3Xd points = grid(axes, {kPositions, kPositions, kPositions});
   PrinterCorrection correction;
-  fit_straight_parts(correction, features, points, needed(machine, axes, points, at));
+  fit_straight_parts(correction, features, machine, axes, at);
   if (!features.mesh) return correction;
   const ThreeAxes over = over_bed(axes, bed);
   for (const std::size_t count : features.points) {

@@ -23,6 +23,13 @@ struct HeightMesh {
   double at(double x, double y) const;
 };
 
+/// A skew or a step factor that the last fit did not measure: the correction has none.
+struct UnmeasuredPart {
+  std::string name;           // "XY", "XZ", "YZ" for a skew, "X", "Y", "Z" for steps
+  double value = 0, std = 0;  // of the model, and its standard uncertainty because no reading determines it
+  double um = 0;              // the larger of both over the travel, um
+};
+
 /// The corrections that the firmware of a 3D printer supports. The firmware applies them to a command in the
 /// order skew, heights, steps per mm.
 struct PrinterCorrection {
@@ -32,6 +39,10 @@ struct PrinterCorrection {
   HeightMesh mesh;
   /// Factors for the steps per mm of X, Y and Z.
   std::array<double, 3> steps{1, 1, 1};
+  /// Skews and factors that stay 0 and 1, because the last fit did not measure them.
+  std::vector<UnmeasuredPart> unmeasured;
+  /// True if the last fit measured none of the three skews: the files then contain no skew.
+  bool no_skew = false;
 
   /// Returns the corrected commands of X, Y and Z, one column for each command, mm.
   Eigen::Matrix3Xd corrected(const Eigen::Matrix3Xd& commands) const;
@@ -72,7 +83,9 @@ void give_shape(Bed& bed, const model::Machine& machine, const ThreeAxes& axes,
 /// the heights are computed at the lowest position of Z. The number of mesh points is the smallest number at
 /// which the heights between the points are within tolerance_um, or the largest permitted number. `at` (one
 /// state): values of inputs and motion. Offsets of the axes are not corrected, because homing determines
-/// them. A rotation about Z is not corrected, because it rotates the whole part. If a bed is given, the
+/// them. A skew or a factor whose standard uncertainty exceeds half of its value, because no reading
+/// determines its parameters (`open` of the fit record), is not corrected: it is in `unmeasured`. A rotation
+/// about Z is not corrected, because it rotates the whole part. If a bed is given, the
 /// heights follow its slope, and the mesh covers the region in which the bed was touched.
 PrinterCorrection printer_correction(const model::Machine& machine, const ThreeAxes& axes,
                                      const PrinterFeatures& features, const model::States& at,

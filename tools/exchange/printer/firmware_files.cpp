@@ -57,13 +57,26 @@ std::vector<ConfigurationFile> klipper(const PresentSetting& present, const std:
   round_to(correction, 1e-9, 1e-6);
   const HeightMesh& mesh = correction.mesh;
   const Skew skew = skew_of(correction, 1e-9);
-  std::string text = fmt::format(
-      "# {}: squareness and bed heights. Write [include vernier.cfg] into printer.cfg, beside the sections\n"
-      "# [skew_correction] and [bed_mesh], which must be present. Load both at the end of the start code:\n"
-      "# SKEW_PROFILE LOAD=vernier and BED_MESH_PROFILE LOAD=vernier.\n",
-      name);
-  text += fmt::format("[skew_correction vernier]\nxy_skew = {:.9f}\nxz_skew = {:.9f}\nyz_skew = {:.9f}\n",
-                      skew.xy, skew.xz, skew.yz);
+  std::string text =
+      correction.no_skew
+          ? fmt::format(
+                "# {}: bed heights. Write [include vernier.cfg] into printer.cfg, beside the section "
+                "[bed_mesh],\n"
+                "# which must be present. Load the heights at the end of the start code:\n"
+                "# BED_MESH_PROFILE LOAD=vernier. The squareness was not measured: a skew profile of the "
+                "printer stays.\n",
+                name)
+          : fmt::format(
+                "# {}: squareness and bed heights. Write [include vernier.cfg] into printer.cfg, beside the "
+                "sections\n"
+                "# [skew_correction] and [bed_mesh], which must be present. Load both at the end of the "
+                "start "
+                "code:\n"
+                "# SKEW_PROFILE LOAD=vernier and BED_MESH_PROFILE LOAD=vernier.\n",
+                name);
+  if (!correction.no_skew)
+    text += fmt::format("[skew_correction vernier]\nxy_skew = {:.9f}\nxz_skew = {:.9f}\nyz_skew = {:.9f}\n",
+                        skew.xy, skew.xz, skew.yz);
   text += "\n[bed_mesh vernier]\nversion = 1\npoints =\n";
   for (Index row = 0; row < mesh.z.rows(); ++row) {
     text += "\t";
@@ -92,9 +105,10 @@ std::vector<ConfigurationFile> reprap(const PresentSetting& present, const std::
   round_to(correction, 1e-8, 1e-3);
   const HeightMesh& mesh = correction.mesh;
   std::string code = fmt::format(
-      "; {}: run in config.g; the heights after homing (G29 S1 P\"vernier_heightmap.csv\")\n"
-      "M556 S1000 X{:.5f} Y{:.5f} Z{:.5f} ; squareness: mm in 1000 mm of XY, YZ, XZ\n",
-      name, 1000 * correction.xy, 1000 * correction.yz, 1000 * correction.xz);
+      "; {}: run in config.g; the heights after homing (G29 S1 P\"vernier_heightmap.csv\")\n", name);
+  if (!correction.no_skew)
+    code += fmt::format("M556 S1000 X{:.5f} Y{:.5f} Z{:.5f} ; squareness: mm in 1000 mm of XY, YZ, XZ\n",
+                        1000 * correction.xy, 1000 * correction.yz, 1000 * correction.xz);
   code += steps_lines(present, correction, "", false, [](std::size_t i, double next) {
     return fmt::format("M92 {}{:.6f}\n", kLetters[i], next);
   });
@@ -121,12 +135,13 @@ std::vector<ConfigurationFile> marlin(const PresentSetting& present, const std::
   const HeightMesh& mesh = correction.mesh;
   const Skew skew = skew_of(correction, 1e-8);
   std::string code = fmt::format(
-      "; {}: send once, then M500 stores it. Marlin needs SKEW_CORRECTION_GCODE, SKEW_CORRECTION_FOR_Z\n"
-      "; and a mesh of {} x {} points from ({:.3f}, {:.3f}) to ({:.3f}, {:.3f}) mm\n"
-      "; (GRID_MAX_POINTS_X, MESH_MIN_X, MESH_MAX_X ... in its configuration).\n"
-      "M852 I{:.8f} J{:.8f} K{:.8f} ; squareness XY, XZ, YZ\n",
-      name, mesh.z.cols(), mesh.z.rows(), mesh.x_low, mesh.y_low, mesh.x_high, mesh.y_high, skew.xy, skew.xz,
-      skew.yz);
+      "; {}: send once, then M500 stores it. Marlin needs {}\n"
+      "; a mesh of {} x {} points from ({:.3f}, {:.3f}) to ({:.3f}, {:.3f}) mm\n"
+      "; (GRID_MAX_POINTS_X, MESH_MIN_X, MESH_MAX_X ... in its configuration).\n",
+      name, correction.no_skew ? "" : "SKEW_CORRECTION_GCODE, SKEW_CORRECTION_FOR_Z and", mesh.z.cols(),
+      mesh.z.rows(), mesh.x_low, mesh.y_low, mesh.x_high, mesh.y_high);
+  if (!correction.no_skew)
+    code += fmt::format("M852 I{:.8f} J{:.8f} K{:.8f} ; squareness XY, XZ, YZ\n", skew.xy, skew.xz, skew.yz);
   for (Index row = 0; row < mesh.z.rows(); ++row)
     for (Index column = 0; column < mesh.z.cols(); ++column)
       code += fmt::format("M421 I{} J{} Z{:.4f}\n", column, row, mesh.z(row, column));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "tools/maths/median.h"
 
@@ -110,15 +111,27 @@ NoiseLayout noise_layout(const model::Measurement& measurement, const std::vecto
   std::vector<int> pose(measurement.rows(), 0);
   for (std::size_t row = 1; row < pose.size(); ++row)
     pose[row] = pose[row - 1] + (steps[row] > tolerance ? 1 : 0);
-  // Time is used if it is recorded and never decreases within a clock.
+  // Time is used if it is recorded and never decreases within a clock. A clock that stands still over its
+  // rows is that of a file without times.
   bool moves = false, falls = false;
+  std::map<std::size_t, std::pair<double, double>> ends;  // of each clock: smallest and largest time
+  std::map<std::size_t, std::size_t> count;
+  for (std::size_t row = 0; row < measurement.rows(); ++row) {
+    const double time = states.time[static_cast<Eigen::Index>(row)];
+    const auto [end, fresh] = ends.try_emplace(states.of(states.clock, row), time, time);
+    end->second = {std::min(end->second.first, time), std::max(end->second.second, time)};
+    ++count[states.of(states.clock, row)];
+  }
+  const bool stands = std::any_of(ends.begin(), ends.end(), [&](const auto& one) {
+    return count[one.first] > 1 && one.second.first == 0 && one.second.second == 0;
+  });
   for (std::size_t row = 1; row < measurement.rows(); ++row) {
     if (states.of(states.clock, row) != states.of(states.clock, row - 1)) continue;
     const auto at = static_cast<Eigen::Index>(row);
     moves = moves || states.time[at] > states.time[at - 1];
     falls = falls || states.time[at] < states.time[at - 1];
   }
-  layout.in_time = moves && !falls;
+  layout.in_time = moves && !falls && !stands;
   const bool one_clock = layout.in_time && time_continues(states, measurement.rows());
   std::map<int, NoiseSeries> of_kind;
   for (std::size_t i = 0; i < observations.size(); ++i) {

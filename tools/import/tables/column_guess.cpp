@@ -66,8 +66,9 @@ bool any_word(const sheet::Heading& heading, bool (*says)(const std::string&)) {
 std::string direction_missing(const sheet::Heading& heading) {
   const std::string unit = heading.unit.empty() ? "" : "[" + heading.unit + "]";
   if (any_word(heading, says_straightness))
-    return "straightness along which axis? State the axis, for example --deviation \"Z" + unit + "=" +
-           heading.text + "\"";
+    return "straightness along which axis? State the axis along which the error was measured, --deviation "
+           "\"Y" +
+           unit + "=" + heading.text + "\" or --deviation \"Z" + unit + "=" + heading.text + "\"";
   if (any_word(heading, says_tilt))
     return "a rotation about which axis? State the axis (right-hand rule), for example --column \"ry" + unit +
            "=" + heading.text + "\"";
@@ -88,6 +89,11 @@ bool is_sense(const std::string& name) { return name.starts_with(kSenseOfAxis); 
 bool is_pure(const std::string& name) {
   const format::ColumnGroup* const column = format::find_column(name);
   return is_sense(name) || (column != nullptr && !column->words && *column->unit == '\0');
+}
+
+bool is_temperature(const std::string& unit) {
+  const auto found = format::find_unit(unit);
+  return !unit.empty() && found && found->dimension == format::Dimension::kTemperature;
 }
 
 bool is_angle(const std::string& unit) {
@@ -138,6 +144,7 @@ SheetColumn Guess::column(const sheet::Heading& heading) const {
     // dX, ΔX: a deviation in one word.
     const std::string tail = word.starts_with('d')        ? word.substr(1)
                              : word.starts_with("\u0394") ? word.substr(2)
+                             : word.starts_with("\u2206") ? word.substr(3)
                                                           : "";
     if (is_axis(tail)) {
       axis = tail;
@@ -146,6 +153,7 @@ SheetColumn Guess::column(const sheet::Heading& heading) const {
     if (axis.empty() && is_axis(word)) axis = word;
   }
   deviation |= sign_said(heading.text, SignPlace::kHeading) != SignSaid::kNothing;
+  if (deviation && axis.empty() && is_temperature(heading.unit)) deviation = false;  // "Δ T [K]"
   if (deviation) return {SheetColumn::Use::kDeviation, axis, heading.unit, "by its heading"};
   if (!axis.empty() && measured) {
     if (const auto reading = reading_of(axis)) {
@@ -177,12 +185,17 @@ SheetColumn Guess::column(const sheet::Heading& heading) const {
 }
 
 std::optional<SheetColumn> Guess::component_error(const sheet::Heading& heading) const {
-  const std::vector<std::string> words = heading_words(heading.name);
-  if (words.size() != 1 || words.front().size() != 3 || words.front().front() != 'E') return std::nullopt;
-  const std::string direction = words.front().substr(1, 1), axis = words.front().substr(2);
-  const bool along = std::string("XYZ").find(direction) != std::string::npos;
-  const bool about = std::string("ABC").find(direction) != std::string::npos;
-  if (!is_axis(axis) || (!along && !about)) return std::nullopt;
+  std::string found;
+  for (const std::string& word : heading_words(heading.name)) {
+    const bool error = word.size() == 3 && word[0] == 'E' &&
+                       std::string_view("XYZABC").find(word[1]) != std::string_view::npos &&
+                       is_axis(word.substr(2));
+    if (error && !found.empty()) return std::nullopt;
+    if (error) found = word;
+  }
+  if (found.empty() || names_correction(heading)) return std::nullopt;
+  const std::string direction = found.substr(1, 1), axis = found.substr(2);
+  const bool along = std::string_view("XYZ").find(direction) != std::string_view::npos;
   constexpr const char* kWhy = "by its heading (component error of ISO 230-1)";
   if (along || direction == axis)
     return SheetColumn{SheetColumn::Use::kDeviation, direction, heading.unit, kWhy};
@@ -190,12 +203,16 @@ std::optional<SheetColumn> Guess::component_error(const sheet::Heading& heading)
 }
 
 Guess::Bare Guess::bare(const std::string& name) {
-  static const std::set<std::string> kActual = {"ist", "istwert", "istposition", "actual", "act"};
+  static const std::set<std::string> kActual = {"ist",      "istwert", "istposition", "istmaß",
+                                                "istmass",  "actual",  "act",         "measured",
+                                                "gemessen", "laser",   "tracker"};
   Bare found = Bare::kOther;
   for (const std::string& word : heading_words(name)) {
     const std::string small = text::in_small_letters(word);
     if (kActual.contains(small))
       found = Bare::kActual;
+    else if (says_display(small) && found != Bare::kActual)
+      found = Bare::kDisplay;
     else if (!says_target(small))
       return Bare::kOther;
     else if (found == Bare::kOther)

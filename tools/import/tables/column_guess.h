@@ -84,8 +84,9 @@ class Guess {
   /// rotation about Y by the right-hand rule. nullopt for any other heading.
   std::optional<SheetColumn> component_error(const sheet::Heading& heading) const;
 
-  /// Kind of a heading that names no axis: "Soll" (target), "Pos", "Istposition" (actual position).
-  enum class Bare { kOther, kTarget, kActual };
+  /// Kind of a heading that names no axis: "Soll" (target), "Pos", "Istposition" (actual position), "Anzeige"
+  /// (the position that the control shows, or the reading of a gauge).
+  enum class Bare { kOther, kTarget, kActual, kDisplay };
   static Bare bare(const std::string& name);
 
  private:

@@ -9,8 +9,10 @@
 #include <set>
 
 #include "tools/format/columns.h"
+#include "tools/format/units.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/column_values.h"
+#include "tools/import/tables/doubled.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
 #include "tools/sheet/dates.h"
@@ -114,10 +116,17 @@ void settle_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
     return one.use == SheetColumn::Use::kColumn && one.name == axis;
   });
   bool actual = false;
+  const auto has = [&](Guess::Bare kind) {
+    return std::any_of(table.headings.begin(), table.headings.end(),
+                       [&](const sheet::Heading& one) { return Guess::bare(one.name) == kind; });
+  };
+  // "Anzeige" beside "Laser" is the target.
+  const bool shown = !has(Guess::Bare::kTarget) && has(Guess::Bare::kActual);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.why != "by its heading") continue;
-    const Guess::Bare bare = Guess::bare(table.headings[k].name);
+    Guess::Bare bare = Guess::bare(table.headings[k].name);
+    if (bare == Guess::Bare::kDisplay && shown) bare = Guess::Bare::kTarget;
     if (bare == Guess::Bare::kActual && !actual && reading_of(axis)) {
       column.name = *reading_of(axis);
       actual = true;
@@ -143,6 +152,36 @@ void settle_display(const sheet::SheetTable& table, std::vector<SheetColumn>& co
     --count[column.name];
     ++count[axis];
     column.name = axis;
+  }
+}
+
+/// The position that the control shows is the commanded one if the table has another measurement of the axis
+/// and no target. Beside a target it is no reading.
+void settle_shown_position(const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
+                           const Guess& guess) {
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kColumn || column.why != "by its heading") continue;
+    std::string axis;
+    bool display = false;
+    for (const std::string& word : heading_words(table.headings[k].name)) {
+      display |= says_display(text::in_small_letters(word));
+      if (guess.is_axis(word)) axis = axis.empty() ? word : "more than one";
+    }
+    const auto unit = format::find_unit(column.unit);
+    const bool large = column.unit.empty() || (unit && unit->factor >= 1);  // a gauge shows um
+    if (!display || !large || !guess.is_axis(axis)) continue;
+    bool target = false, measured = false;
+    for (const SheetColumn& other : columns) {
+      if (&other == &column || other.use == SheetColumn::Use::kLeft) continue;
+      const bool deviation = other.use == SheetColumn::Use::kDeviation;
+      target |= !deviation && other.name == axis;
+      measured |= deviation ? other.name.empty() || other.name == axis : other.name == reading_of(axis);
+    }
+    if (measured && target)
+      leave(column, fmt::format("the control shows this position; the target is the column {}", axis));
+    else if (measured)
+      column.name = axis;
   }
 }
 
@@ -203,6 +242,11 @@ SignText sign_of_texts(const sheet::Sheet& sheet, const sheet::SheetTable& table
     for (const std::string& cell : sheet.rows[row])
       if (cell.size() > 4 && !sheet::plain_number(cell, sheet.decimal_comma)) look(cell, sheet.line[row]);
   }
+  // A cover sheet is about all sheets of the workbook; another table states its own sign.
+  for (const sheet::TextElsewhere& other : sheet.elsewhere)
+    if (!other.table)
+      found.add(sign_said(other.text, SignPlace::kTitle), 0,
+                fmt::format("sheet {}: {}", other.sheet, other.text));
   return found;
 }
 
@@ -224,11 +268,35 @@ void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
       sign.said = SignSaid::kNominalLessActual;  // the titles are about deviations
     else
       sign.add(texts.said, texts.line, texts.text);
+    if (sign.said != SignSaid::kNothing && sign.text == texts.text) column.sign_from = texts.text;
     column.turned = sign.said == SignSaid::kNominalLessActual;
     if (sign.said != SignSaid::kUnclear) continue;
     column.sign_place = {sheet.file, sign.line};
     column.sign_text = sign.text;
   }
+}
+
+/// A deviation beside a measured position of the same axis: one of the two is the reading.
+void settle_beside_reading(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                           std::vector<SheetColumn>& columns, std::size_t deviation,
+                           std::set<std::string>& measured) {
+  const std::string reading = *reading_of(columns[deviation].name);
+  const auto named = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find_if(columns.begin(), columns.end(),
+                                                 [&](const SheetColumn& one) {
+                                                   return one.use == SheetColumn::Use::kColumn &&
+                                                          one.name == name;
+                                                 }) -
+                                    columns.begin());
+  };
+  const std::size_t target = named(columns[deviation].name), position = named(reading);
+  const bool compares =
+      target < columns.size() && position < columns.size() && columns[position].why == "by its heading";
+  if (!compares)
+    leave(columns[deviation],
+          fmt::format("the table already has the measured position, as the column {}", reading));
+  else if (settle_doubled(sheet, table, columns, {target, position, deviation}))
+    measured.erase(reading);
 }
 
 /// Deviations and directions without an axis belong to the only axis; columns that remain open are omitted
@@ -280,8 +348,7 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
                                 "parallel to, --deviation \"X={}\"",
                                 column.name, table.headings[k].text));
     else if (deviation && measured.contains(*reading_of(column.name)))
-      leave(column, fmt::format("the table already has the measured position, as the column {}",
-                                *reading_of(column.name)));
+      settle_beside_reading(sheet, table, columns, k, measured);
     else if (column.name == kSensePrefix && moved.size() == 1)
       column.name = format::axis_column(format::AxisQuantity::kSense, *moved.begin());
     else if (column.name == kSensePrefix)
@@ -317,8 +384,8 @@ void keep_names_apart(const sheet::SheetTable& table, std::vector<SheetColumn>& 
 
 }  // namespace
 
-std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& table,
-                                          const SheetWishes& wishes) {
+std::vector<SheetColumn> columns_by_headings(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                             const SheetWishes& wishes) {
   const Guess guess(wishes);
   std::vector<SheetColumn> columns;
   for (const sheet::Heading& heading : table.headings) columns.push_back(guess.column(heading));
@@ -335,6 +402,14 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
   }
   settle_axis(sheet, table, columns, guess);
   settle_display(table, columns, guess);
+  settle_shown_position(table, columns, guess);
+  return columns;
+}
+
+std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                          const SheetWishes& wishes) {
+  const Guess guess(wishes);
+  std::vector<SheetColumn> columns = columns_by_headings(sheet, table, wishes);
   leave_statistics(table, columns);
   settle_by_values(sheet, table, columns);
   settle(sheet, table, columns, guess, wishes.constants);

@@ -6,6 +6,11 @@
 
 namespace vernier::importer {
 
+/// Returns the meaning of each column by the assignments of the user and the headings alone, before values
+/// decide. Throws InputError if an assignment of the user matches no column.
+std::vector<SheetColumn> columns_by_headings(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                             const SheetWishes& wishes);
+
 /// Returns the meaning of each column of a sheet. The meaning comes from the assignment of the user,
 /// otherwise from the heading, and if the heading is ambiguous from the values. Throws InputError if an
 /// assignment of the user matches no column.

@@ -9,9 +9,12 @@
 #include "tools/format/columns.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/computed_rows.h"
+#include "tools/import/tables/directions.h"
 #include "tools/import/tables/table_shape.h"
+#include "tools/import/tables/thousands.h"
 #include "tools/import/tables/wide_sheet.h"
 #include "tools/import/words/sheet_words.h"
+#include "tools/import/words/sign_words.h"
 #include "tools/sheet/several_tables.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
@@ -156,6 +159,32 @@ void note_rotating_frame(SheetReading& reading) {
                     rotary, columns));
 }
 
+/// Notes the texts that stated the sign, and texts of other tables that state one for themselves.
+void note_signs(SheetReading& reading) {
+  if (reading.wishes.turned) return;
+  std::set<std::string> noted;
+  bool deviations = false;
+  for (const SheetColumn& column : reading.columns) {
+    if (column.use != SheetColumn::Use::kDeviation) continue;
+    deviations = true;
+    if (column.sign_from.empty() || !noted.insert(column.sign_from).second) continue;
+    reading.sheet.notes.push_back(
+        fmt::format("the sign of the deviations is {}, by the text \"{}\"; if this is wrong, give --sign {}",
+                    column.turned ? "nominal - actual" : "actual - nominal", column.sign_from,
+                    column.turned ? "actual-nominal" : "nominal-actual"));
+  }
+  for (const sheet::TextElsewhere& other : reading.sheet.elsewhere) {
+    const SignSaid said =
+        other.table && deviations ? sign_said(other.text, SignPlace::kTitle) : SignSaid::kNothing;
+    if (said == SignSaid::kNothing || !noted.insert(other.text).second) continue;
+    reading.sheet.notes.push_back(
+        fmt::format("the sheet {} has the text \"{}\"; if it is about this sheet too, give --sign "
+                    "nominal-actual or --sign "
+                    "actual-nominal",
+                    other.sheet, other.text));
+  }
+}
+
 }  // namespace
 
 SheetReading read_as_sheet(const std::string& bytes, const std::string& file, const SheetWords& words,
@@ -166,9 +195,11 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   sheet::keep_table(result.sheet, result.wishes.format.table);
   result.table = sheet::parts_of_sheet(result.sheet);
   refuse_transposed(result.sheet, result.table);
+  leave_words_below(result.sheet, result.table);
   note_short_rows(result.sheet, result.table);
   leave_computed_rows(result.sheet, result.table);
   result.runs = unfold_runs(result.sheet, result.table);
+  split_runs(result.sheet, result.table);
   for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
   for (const std::string& one : words.deviations) assign_deviation(result.wishes, one);
   for (const std::string& heading : words.fill)
@@ -181,8 +212,13 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
     column.use = SheetColumn::Use::kLeft;
     result.wishes.assignments.push_back({heading, column, {}});
   }
+  if (words.decimal.empty())
+    settle_thousands(result.sheet, result.table,
+                     columns_by_headings(result.sheet, result.table, result.wishes));
   result.columns = columns_of_sheet(result.sheet, result.table, result.wishes);
   fill_down(result);
+  settle_directions(result.sheet, result.table, result.columns);
+  note_signs(result);
   note_sparse_columns(result);
   note_rotating_frame(result);
   note_exchanged_headings(result.sheet, result.table, result.columns);

@@ -155,13 +155,19 @@ std::string assignments_to_try(const sheet::SheetTable& table, const std::vector
   });
   std::string position, reading, unit;
   bool actual = false, correction = false;
+  const auto has = [&](Guess::Bare kind) {
+    return std::any_of(table.headings.begin(), table.headings.end(),
+                       [&](const sheet::Heading& one) { return Guess::bare(one.name) == kind; });
+  };
+  const bool shown = !has(Guess::Bare::kTarget) && has(Guess::Bare::kActual);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name) ||
         guess.is_motion(column.name) || is_sense(column.name) || is_known_name(column.name) ||
         names_counting(table.headings[k]))
       continue;
-    const Guess::Bare bare = Guess::bare(table.headings[k].name);
+    Guess::Bare bare = Guess::bare(table.headings[k].name);
+    if (bare == Guess::Bare::kDisplay && shown) bare = Guess::Bare::kTarget;
     if (bare == Guess::Bare::kTarget && axis == columns.end() && position.empty()) {
       position =
           fmt::format("--column \"{}={}\" ", column.unit.empty() ? "X[mm]" : "X", table.headings[k].text);
@@ -173,6 +179,14 @@ std::string assignments_to_try(const sheet::SheetTable& table, const std::vector
     }
   }
   const std::string name = axis == columns.end() ? "X" : axis->name;
+  const auto open = std::find_if(columns.begin(), columns.end(), [](const SheetColumn& column) {
+    return column.use == SheetColumn::Use::kLeft && column.name.empty() &&
+           column.why.find("the axis of this deviation is not known") == 0;
+  });
+  if (open != columns.end() && !actual)
+    return fmt::format("{}--deviation \"{}{}={}\"{}", position, name, open->unit.empty() ? "[um]" : "",
+                       table.headings[static_cast<std::size_t>(open - columns.begin())].text,
+                       open->unit.empty() ? "; [um] is an example: state the unit of the values" : "");
   if (reading.empty()) reading = "HEADING";
   const std::string which = unit.empty() ? "; [mm] and [um] are examples: state the unit of the values" : "";
   if (correction)

@@ -25,6 +25,7 @@ struct SheetColumn {
   bool by_values = false;  // true: the values determined whether the column is a position or a deviation
   text::Place sign_place = {};  // place of a text that states the sign of this deviation, but not clearly
   std::string sign_text = {};   // this text; empty: the sign is clear
+  std::string sign_from = {};   // text outside the headings that states the sign of this deviation clearly
 };
 
 /// Description of the columns by the user: assignments by heading or number, constants, and the unit of

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <set>
@@ -11,6 +12,7 @@
 
 #include "tools/format/units.h"
 #include "tools/import/tables/column_guess.h"
+#include "tools/import/tables/computed_rows.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
@@ -75,6 +77,35 @@ void refuse_transposed(const sheet::Sheet& sheet, const sheet::SheetTable& table
           "reads quantities in columns: transpose the table in the spreadsheet program (copy, paste "
           "special, transpose), save it, and import it again",
           labels));
+}
+
+void leave_words_below(sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  if (!table.has_headings) return;
+  const auto is_number = [&](const std::string& cell) {
+    return sheet::plain_number(cell, true) || sheet::plain_number(cell, false);
+  };
+  const auto is_text = [](const std::string& cell) {
+    return std::count_if(cell.begin(), cell.end(), [](unsigned char c) { return std::isalpha(c) != 0; }) >= 3;
+  };
+  std::vector<std::string> notes;
+  while (sheet.rows.size() > table.first_data + 1) {
+    const std::vector<std::string>& cells = sheet.rows.back();
+    if (!sheet::is_blank(cells)) {
+      if (std::any_of(cells.begin(), cells.end(), is_number) ||
+          std::none_of(cells.begin(), cells.end(), is_text) ||
+          std::any_of(cells.begin(), cells.end(), says_computed_row) ||
+          std::any_of(cells.begin(), cells.end(), sheet::begins_with_error_value))
+        break;
+      std::string words;
+      for (const std::string& cell : cells)
+        if (!cell.empty()) words += (words.empty() ? "" : " ") + cell;
+      notes.push_back(
+          fmt::format("line {}: \"{}\" is a text below the table and is omitted", sheet.line.back(), words));
+      sheet.remarks.push_back({sheet.line.back(), words});
+    }
+    sheet::remove_row(sheet, sheet.rows.size() - 1);
+  }
+  sheet.notes.insert(sheet.notes.end(), notes.rbegin(), notes.rend());
 }
 
 void note_exchanged_headings(sheet::Sheet& sheet, const sheet::SheetTable& table,

@@ -29,6 +29,7 @@ struct RunColumn {
   std::string run, axis, unit;
   int sense = 0;
   bool deviation = false, measured = false, turned = false, pos = false;
+  bool relative = false;  // the direction by a word that is not about the axis: "hin", "forward"
 };
 
 enum class Piece { kNone, kNumber, kWord, kSign };
@@ -75,6 +76,14 @@ std::vector<Token> tokens_of(const std::string& name) {
     if (glued) tokens.push_back(std::move(token));
   }
   return tokens;
+}
+
+/// A direction of the survey and not of the axis.
+bool says_relative(const std::string& word) {
+  static const std::set<std::string> kWords = {"hin",   "her",  "zurück",   "zur",     "zurueck",
+                                               "vor",   "rück", "rueck",    "forward", "fwd",
+                                               "forth", "back", "backward", "bwd"};
+  return kWords.contains(word);
 }
 
 bool says_run(const std::string& word) {
@@ -130,6 +139,7 @@ std::optional<RunColumn> run_column(const sheet::Heading& heading) {
     } else if (sense_said(small) != 0) {
       if (by_word != 0) return std::nullopt;
       by_word = sense_said(small);
+      column.relative |= says_relative(small);
       column.pos |= small == "pos";
     } else if (says_deviation(small)) {
       column.deviation = said = true;
@@ -227,6 +237,35 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
   return heading;
 }
 
+/// Notes "hin" in a table whose positions decrease from row to row: the first approach may have run that way.
+void note_decreasing_positions(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                               const std::vector<RunColumn>& runs, std::size_t position) {
+  constexpr std::size_t kEnough = 3;  // fewer rows show no order
+  if (std::none_of(runs.begin(), runs.end(), [](const RunColumn& one) { return one.relative; })) return;
+  std::optional<double> before;
+  std::size_t rows = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto number = sheet::plain_number(sheet.rows[row][position], sheet.decimal_comma);
+    const auto value = number ? text::parse_number(*number) : std::nullopt;
+    if (!value) continue;
+    if (before && *value >= *before) return;
+    before = value;
+    ++rows;
+  }
+  if (rows < kEnough) return;
+  const auto forth =
+      std::find_if(runs.begin(), runs.end(), [](const RunColumn& one) { return one.sense > 0; });
+  if (forth == runs.end()) return;
+  const std::string& heading = table.headings[forth->column].text;
+  sheet.notes.push_back(
+      fmt::format("\"{}\" is read as the approach in the direction of increasing positions, and the "
+                  "positions of the table "
+                  "decrease from row to row; if this approach ran toward smaller positions, write - in its "
+                  "heading and + in "
+                  "the heading of the other approach",
+                  heading));
+}
+
 bool belong_together(const std::vector<RunColumn>& runs) {
   if (runs.size() < 2) return false;
   bool pos = false, back = false;
@@ -259,6 +298,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   }
   if (others.empty() || !belong_together(runs)) return 0;
   number_runs(sheet, table, runs);
+  note_decreasing_positions(sheet, table, runs, others.front());
   constexpr std::size_t kMostCells = 8u << 20;  // 64 MB of numbers
   const std::size_t width = others.size() + 3, data = sheet.rows.size() - table.first_data;
   if (data > kMostCells / width / runs.size())

@@ -12,15 +12,23 @@ namespace {
 
 using WordSet = std::set<std::string, std::less<>>;
 
-const WordSet kTargetWords = {"soll",      "sollwert", "target",   "nominal", "cmd",          "command",
-                              "commanded", "position", "pos",      "set",     "ziel",         "achse",
-                              "axis",      "machine",  "maschine", "nom",     "sollposition", "zielposition"};
-const WordSet kMeasuredWords = {"ist",     "istwert", "istposition", "measured", "actual",
-                                "act",     "meas",    "mess",        "messwert", "gemessen",
-                                "reading", "tracker", "laser",       "read",     "mes"};
-const WordSet kDeviationWords = {"abweichung", "abweichungen", "deviation", "deviations", "dev",
-                                 "error",      "errors",       "fehler",    "err",        "delta",
-                                 "diff",       "abw",          "differenz", "difference", "ecart"};
+const WordSet kTargetWords = {
+    "soll",         "sollwert", "target",       "nominal",      "cmd",      "command",      "commanded",
+    "position",     "pos",      "set",          "ziel",         "achse",    "axis",         "machine",
+    "maschine",     "nom",      "sollposition", "zielposition", "nennmaß",  "nennmass",     "nennwert",
+    "nennposition", "sollmaß",  "sollmass",     "kommandiert",  "befohlen", "programmiert", "programmed",
+    "demand",       "setpoint", "vorgabe",      "vorgabewert"};
+const WordSet kMeasuredWords = {"ist",     "istwert", "istposition", "istmaß", "istmass",  "measured",
+                                "actual",  "act",     "meas",        "mess",   "messwert", "gemessen",
+                                "reading", "tracker", "laser",       "read",   "mes"};
+/// The position that the control shows.
+const WordSet kDisplayWords = {"anzeige",   "angezeigt", "angezeigte",     "anzeigewert", "display",
+                               "displayed", "dro",       "digitalanzeige", "indicated",   "readout"};
+const WordSet kDeviationWords = {
+    "abweichung", "abweichungen", "deviation", "deviations", "dev", "error", "errors", "fehler", "err",
+    "delta", "diff", "abw", "differenz", "difference", "ecart",
+    // Greek letters, and the sign of the increment; the small letters of words are those of ASCII.
+    "\u0394", "\u03b4", "\u2206"};
 const WordSet kCorrectionWords = {"korr", "corr", "comp", "komp"};
 constexpr std::array<std::string_view, 4> kCorrectionStarts = {"korrektur", "correction", "kompensation",
                                                                "compensation"};
@@ -35,9 +43,9 @@ const WordSet kTiltWords = {"pitch",      "yaw",        "roll",   "nicken", "nic
 const WordSet kCountingWords = {"nr",    "no",    "num",    "nummer", "number", "index", "idx",       "id",
                                 "lfd",   "punkt", "punkte", "point",  "points", "pt",    "messpunkt", "row",
                                 "zeile", "#",     "n",      "pos.nr", "posnr",  "sample"};
-const WordSet kStatisticWords = {"mittel", "mittelwert", "mittelwerte",       "mean",  "average",
-                                 "avg",    "mw",         "durchschnitt",      "stdev", "stdabw",
-                                 "stabw",  "spannweite", "standardabweichung"};
+const WordSet kStatisticWords = {"mittel", "mittelwert", "mittelwerte", "mittlere",   "mittl",
+                                 "mean",   "average",    "avg",         "mw",         "durchschnitt",
+                                 "stdev",  "stdabw",     "stabw",       "spannweite", "standardabweichung"};
 const WordSet kForthWords = {"1",   "+1",  "+",        "forward", "fwd",    "forth",
                              "up",  "pos", "positive", "positiv", "vor",    "vorwärts",
                              "hin", "auf", "plus",     "cw",      "\u2191", "\u2192"};
@@ -54,7 +62,10 @@ const WordSet kBackWords = {"-1",
                             "negative",
                             "negativ",
                             "zurück",
+                            "zur",
+                            "zurueck",
                             "rück",
+                            "rueck",
                             "rückwärts",
                             "her",
                             "ab",
@@ -74,6 +85,7 @@ std::vector<std::string> heading_words(const std::string& name) {
 
 bool says_target(const std::string& word) { return kTargetWords.contains(word); }
 bool says_measured(const std::string& word) { return kMeasuredWords.contains(word); }
+bool says_display(const std::string& word) { return kDisplayWords.contains(word); }
 bool says_statistic(const std::string& word) { return kStatisticWords.contains(word); }
 bool says_correction(const std::string& word) {
   return kCorrectionWords.contains(word) ||

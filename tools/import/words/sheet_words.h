@@ -16,6 +16,9 @@ std::vector<std::string> heading_words(const std::string& name);
 // letters, in one of the languages that are usual in workshops.
 bool says_target(const std::string& word);
 bool says_measured(const std::string& word);
+/// True for the position that the control shows: "Anzeige". Beside another measurement of the axis, this
+/// position is the commanded one.
+bool says_display(const std::string& word);
 /// True for a statistic that a spreadsheet computes from its readings (a mean or a standard deviation), for
 /// example "Mittelwert".
 bool says_statistic(const std::string& word);

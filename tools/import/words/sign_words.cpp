@@ -328,6 +328,51 @@ bool compares_in_words(const std::vector<SignToken>& list, std::string_view text
   return positive && nominal && actual && size;
 }
 
+/// Words of a text about a size; "=", "+" and "-" are words too.
+std::vector<std::string> words_about_size(std::string_view text) {
+  std::string spaced;
+  for (const char c : text::in_small_letters(text))
+    spaced += c == '=' || c == ':' ? " = " : std::string(1, c);
+  std::vector<std::string> words = text::words_in(spaced, " \t_./;,()[]\"'");
+  for (std::string& word : words)
+    if (word == "\u2212" || word == "\u2013") word = "-";
+  return words;
+}
+
+/// The sign that a word states: 1 for positive, -1 for negative, 0 for other words.
+int sign_of_word(const std::string& word) {
+  if (word.starts_with("positiv") || word == "plus" || word == "+") return 1;
+  return word.starts_with("negativ") || word == "minus" || word == "-" ? -1 : 0;
+}
+
+/// "positiv, wenn zu kurz": the sign of a deviation by the length that the machine travels. Too short means
+/// that the actual value is below the nominal one.
+SignSaid sign_of_size(std::string_view text) {
+  static const WordSet kShort = {"kurz", "kürzer", "short", "shorter", "undershoot"},
+                       kLong = {"lang", "länger", "weit", "long", "longer", "far", "overshoot"},
+                       kLinks = {"wenn", "falls", "bei",   "bedeutet", "heißt",      "heisst", "if",
+                                 "when", "for",   "means", "=",        "entspricht", "zu",     "too"};
+  const std::vector<std::string> words = words_about_size(text);
+  const bool linked =
+      std::any_of(words.begin(), words.end(), [&](const std::string& word) { return kLinks.contains(word); });
+  SignSaid said = SignSaid::kNothing;
+  int before = 0;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (const int sign = sign_of_word(words[k]); sign != 0) before = sign;
+    if (!kShort.contains(words[k]) && !kLong.contains(words[k])) continue;
+    // "zu kurz = +" states the sign behind the size, "positiv, wenn zu kurz" before it.
+    int sign = k + 2 < words.size() && kLinks.contains(words[k + 1]) ? sign_of_word(words[k + 2]) : 0;
+    if (sign == 0) sign = before;
+    for (std::size_t next = k + 1; sign == 0 && next < words.size(); ++next) sign = sign_of_word(words[next]);
+    if (sign == 0) continue;
+    const bool turned = kShort.contains(words[k]) == (sign > 0);
+    said = both_signs(said, !linked  ? SignSaid::kUnclear
+                            : turned ? SignSaid::kNominalLessActual
+                                     : SignSaid::kActualLessNominal);
+  }
+  return said;
+}
+
 }  // namespace
 
 SignSaid both_signs(SignSaid one, SignSaid other) {
@@ -342,7 +387,7 @@ SignSaid sign_said(std::string_view text, SignPlace place) {
   for (std::size_t k = 0; k < tokens.list().size(); ++k)
     if (tokens.list()[k].kind == SignKind::kMinus)
       said = both_signs(said, Difference(tokens.list(), k, place).said());
-  return said;
+  return both_signs(said, sign_of_size(text));
 }
 
 }  // namespace vernier::importer

@@ -6,6 +6,8 @@ const kNumber = '[+−-]?\\d[\\d.]*(?:e[+−-]?\\d+)?';
 const kNumbers = new RegExp(kNumber, 'g'),
   kOnlyNumber = new RegExp(`^${kNumber}( [%‰°]| [µu]?m|)$`);
 
+const kBetweenSentences = /(?<=[.!?]) (?=[A-Z\d])/;
+
 let exact = new Map(),
   patterns = [],
   decimal = '.';
@@ -35,7 +37,7 @@ function compiled(key, translation) {
     .split(/([#*])/)
     .map((part) => (part === '#' ? `(${kNumber})` : part === '*' ? '(.+?)' : escaped(part)))
     .join('');
-  return { form: new RegExp(`^${source}$`, 's'), translation };
+  return { form: new RegExp(`^${source}$`, 's'), translation, sentences: /[.!?] [A-Z\d*#]/.test(key) };
 }
 
 /** From now on t() translates; without a catalogue every text stays as it is. */
@@ -60,8 +62,6 @@ export function t(text) {
   return before + translated(words) + after;
 }
 
-const kBetweenSentences = /(?<=[.!?]) (?=[A-Z\d])/;
-
 function translated(words) {
   const whole = matched(words);
   if (whole !== words) return whole;
@@ -76,8 +76,10 @@ function matched(words) {
   if (key !== words && exact.has(key)) return filled(exact.get(key), words.match(kNumbers));
   const withUnit = /^(.+) \[([^\]]*)\]$/.exec(words);
   if (withUnit) return `${t(withUnit[1])} [${withUnit[2]}]`;
-  for (const { form, translation } of patterns) {
-    const found = form.exec(words);
+  // The words of one sentence stand for no words of the next one.
+  const several = kBetweenSentences.test(words);
+  for (const { form, translation, sentences } of patterns) {
+    const found = several && !sentences ? null : form.exec(words);
     if (found) return filled(translation, found.slice(1));
   }
   return words;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/machine_log.h"
+#include "tools/import/logs/machine_log.h"
 
 #include <cmath>
 

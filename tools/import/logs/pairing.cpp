@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/pairing.h"
+#include "tools/import/logs/pairing.h"
 
 #include <fmt/format.h>
 

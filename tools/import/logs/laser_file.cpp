@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/laser_file.h"
+#include "tools/import/logs/laser_file.h"
 
 #include <fmt/format.h>
 

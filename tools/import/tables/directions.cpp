@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/tables/directions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "tools/format/columns.h"
+#include "tools/import/tables/column_guess.h"
+#include "tools/import/words/sheet_words.h"
+#include "tools/sheet/sheet_number.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+/// Two codes of a column of directions, in small letters: that of increasing positions first.
+struct Codes {
+  std::string up, down;
+  bool usual = true;      // false: only the positions can decide
+  bool doubtful = false;  // the usual meaning is often another one
+};
+
+std::string code_of(const std::string& cell) {
+  std::string code = text::in_small_letters(cell);
+  while (code.ends_with('.')) code.pop_back();
+  return code;
+}
+
+/// The meaning of two codes; nullopt for signs, which need no decision, and for codes that no list has.
+std::optional<Codes> meaning_of(const std::set<std::string>& codes) {
+  static const std::array<Codes, 11> kPairs = {{{"v", "r"},
+                                                {"v", "z"},
+                                                {"h", "r"},
+                                                {"h", "z"},
+                                                {"f", "b"},
+                                                {"f", "r"},
+                                                {"1", "0", true, true},
+                                                {"1", "2", true, true},
+                                                {"re", "li", false},
+                                                {"r", "l", false},
+                                                {"rechts", "links", false}}};
+  if (codes.size() != 2) return std::nullopt;
+  const std::string &a = *codes.begin(), &b = *codes.rbegin();
+  for (const Codes& pair : kPairs)
+    if (codes == std::set<std::string>{pair.up, pair.down}) return pair;
+  if (codes == std::set<std::string>{"left", "right"}) return Codes{"right", "left", false};
+  static const std::set<std::string> kSigns = {"+",        "-",       "1",       "-1",   "+1",    "\u2212",
+                                               "\u22121",  "pos",     "neg",     "plus", "minus", "positive",
+                                               "negative", "positiv", "negativ", "up",   "down",  "auf",
+                                               "ab",       "\u2191",  "\u2193"};
+  if (kSigns.contains(a) || kSigns.contains(b) || sense_said(a) * sense_said(b) != -1) return std::nullopt;
+  return sense_said(a) > 0 ? Codes{a, b} : Codes{b, a};
+}
+
+/// Steps from row to row with one code, by the direction of the motion.
+struct Steps {
+  std::size_t up = 0, down = 0;
+  /// 1, -1: nearly all steps go in one direction. A table of several lines steps back at the end of each
+  /// line.
+  int direction() const {
+    constexpr std::size_t kFewest = 2, kTimes = 3;  // steps in all; times as many in the one direction
+    if (up + down < kFewest) return 0;
+    return up > kTimes * down ? 1 : down > kTimes * up ? -1 : 0;
+  }
+};
+
+std::optional<double> value_at(const sheet::Sheet& sheet, std::size_t row, std::size_t column) {
+  const auto number = sheet::plain_number(sheet.rows[row][column], sheet.decimal_comma);
+  return number ? text::parse_number(*number) : std::nullopt;
+}
+
+std::map<std::string, Steps> steps_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                      std::size_t position, std::size_t code) {
+  std::map<std::string, Steps> steps;
+  std::optional<std::size_t> before;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    if (sheet::is_blank(sheet.rows[row])) continue;
+    const auto here = value_at(sheet, row, position);
+    if (before && here && code_of(sheet.rows[*before][code]) == code_of(sheet.rows[row][code])) {
+      Steps& of = steps[code_of(sheet.rows[row][code])];
+      const auto there = value_at(sheet, *before, position);
+      of.up += there && *here > *there ? 1 : 0;
+      of.down += there && *here < *there ? 1 : 0;
+    }
+    before = row;
+  }
+  return steps;
+}
+
+void write_directions(sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column,
+                      const Codes& codes) {
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    std::string& cell = sheet.rows[row][column];
+    if (code_of(cell) == codes.up)
+      cell = "1";
+    else if (code_of(cell) == codes.down)
+      cell = "-1";
+  }
+}
+
+void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                   const std::vector<SheetColumn>& columns, std::size_t k) {
+  const std::string axis =
+      columns[k].name.substr(std::string(format::entry_of(format::AxisQuantity::kSense).prefix).size());
+  const auto position = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& one) {
+    return one.use == SheetColumn::Use::kColumn && one.name == axis;
+  });
+  std::set<std::string> found;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+    if (!sheet::is_blank(sheet.rows[row])) found.insert(code_of(sheet.rows[row][k]));
+  std::optional<Codes> codes = meaning_of(found);
+  if (!codes) return;
+  const std::string& heading = table.headings[k].text;
+  int shown = 0;
+  if (position != columns.end()) {
+    std::map<std::string, Steps> steps =
+        steps_of(sheet, table, static_cast<std::size_t>(position - columns.begin()), k);
+    const int up = steps[codes->up].direction(), down = steps[codes->down].direction();
+    shown = up * down == -1 ? up : 0;
+  }
+  if (shown == 0 && !codes->usual) return;
+  const bool exchanged = shown < 0;
+  if (exchanged) std::swap(codes->up, codes->down);
+  if (exchanged || (shown != 0 && !codes->usual))
+    sheet.notes.push_back(
+        fmt::format("\"{}\": {} is the direction of increasing positions of {}, by the order of "
+                    "the positions in the rows",
+                    heading, codes->up, axis));
+  else if (shown == 0 && codes->doubtful)
+    sheet.notes.push_back(fmt::format(
+        "\"{}\": {} is read as the direction of increasing positions of {}, {} as the other one, and "
+        "the order of the positions does not show the direction; if this is wrong, write + and - in "
+        "this column",
+        heading, codes->up, axis, codes->down));
+  write_directions(sheet, table, k, *codes);
+}
+
+/// "1+" or "2 hin": the run and the direction; nullopt for other texts.
+std::optional<std::pair<std::string, std::string>> run_and_direction(const std::string& cell) {
+  const std::string_view digits = "0123456789";
+  std::size_t end = 0;
+  while (end < cell.size() && digits.find(cell[end]) != std::string_view::npos) ++end;
+  if (end == 0 || end == cell.size()) return std::nullopt;
+  const std::string rest = text::trimmed(cell.substr(end));
+  static const std::set<std::string> kLetters = {"v", "r", "h", "z"};
+  if (digits.find(rest.front()) != std::string_view::npos) return std::nullopt;
+  if (sense_said(rest) == 0 && !kLetters.contains(code_of(rest))) return std::nullopt;
+  return std::pair(cell.substr(0, end), rest);
+}
+
+bool names(const sheet::Heading& heading, bool (*says)(const SheetColumn&)) {
+  return says(Guess(SheetWishes()).column(heading));
+}
+
+}  // namespace
+
+void split_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
+  if (!table.has_headings) return;
+  std::optional<std::size_t> runs;
+  for (std::size_t k = 0; k < table.headings.size(); ++k) {
+    if (names(table.headings[k], [](const SheetColumn& one) { return is_sense(one.name); })) return;
+    if (names(table.headings[k], [](const SheetColumn& one) { return one.name == format::columns::kRun; }))
+      runs = k;
+  }
+  if (!runs) return;
+  std::set<std::string> directions;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    if (sheet.rows[row][*runs].empty()) continue;
+    const auto both = run_and_direction(sheet.rows[row][*runs]);
+    if (!both) return;
+    directions.insert(both->second);
+  }
+  if (directions.size() != 2) return;
+  std::string before;
+  for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
+    std::string direction;
+    std::string& cell = sheet.rows[row][*runs];
+    if (row >= table.first_data && !sheet::is_blank(sheet.rows[row])) {
+      if (const auto both = run_and_direction(cell)) {
+        cell = both->first;
+        before = both->second;
+      }
+      direction = before;
+    }
+    sheet.rows[row].push_back(std::move(direction));
+  }
+  table.headings.push_back({"sense", "sense", "", ""});
+  sheet.notes.push_back(
+      fmt::format("\"{}\" has the run and the approach direction in one cell: they are read as "
+                  "two columns",
+                  table.headings[*runs].text));
+}
+
+void settle_directions(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                       const std::vector<SheetColumn>& columns) {
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (columns[k].use == SheetColumn::Use::kColumn && is_sense(columns[k].name) &&
+        table.headings[k].text != columns[k].name)
+      settle_column(sheet, table, columns, k);
+}
+
+}  // namespace vernier::importer
