@@ -267,12 +267,14 @@ TEST(Cycle, TicksCountAsActiveOnlyWhileTheyAre) {
   for (int i = 0; i < 50; ++i) rig.tick();
   EXPECT_EQ(rig.cycle().health().active_ticks, 0u);
   std::uint64_t active = 0;
+  const std::uint64_t before = rig.cycle().health().ticks;
   for (int i = 0; i < 1000; ++i) {
     const TickReport report = rig.tick(i == 0 ? Command::kActivate : Command::kNone);
     active += report.mode == Mode::kActive ? 1 : 0;
   }
   EXPECT_GT(active, 500u);
   EXPECT_EQ(rig.cycle().health().active_ticks, active);
+  EXPECT_EQ(rig.cycle().health().ticks - before, 1000u);
 }
 
 TEST(Cycle, RefusedWriteIsRepeatedWithTheSameValue) {
