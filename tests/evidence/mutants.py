@@ -56,6 +56,13 @@ EQUIVALENT = [
     ("i < tick.lag_count; ++i) lags[i] = state.lag[i]", ("<", "<="), "one state more is copied, which nothing reads; 16 lags are all"),
     ("shift >= 64 ? 0 : x.mantissa", (">=", ">"), "no angle reaches it: the smallest, 1 mHz at 2^30 mHz, needs a shift of 56"),
     ("nanometres.shift > 94", ("94", "95"), "no setting reaches it"),
+    ("return value < 0 ? -higher(value", ("<", "<="), "zero is its own opposite"),
+    ("if (answered > 0) reply[0]", ("0", "1"), "a reply has a head of three bytes"),
+    ("kOrder[32]", ("32", "33"), "a further place that nothing reads"),
+    ("registers[0] = 12345;", ("0", "1"), "the time of an operation does not depend on its values"),
+    ("term = {0, 0, 20};", ("0", "1"), "the time of a product does not depend on its registers"),
+    ("written && at < image_bytes", ("<", "<="), "one write of no bytes"),
+    ("std::uint32_t i = 0; i < kMaxAxes; ++i) axis[i] = i", ("0", "1"), "the first is 0 already"),
     ("kTravelGuard = 14", ("14", "15"), "one guard bit more: the widest value stays below 2^63"),
 ]
 

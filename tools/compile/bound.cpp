@@ -5,9 +5,12 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "tools/compile/symbolic/calculus.h"
 #include "tools/compile/symbolic/functions.h"
+#include "tools/compile/symbolic/ranges.h"
+#include "tools/compile/walk.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::compile {
@@ -15,9 +18,8 @@ namespace {
 
 using Registers = std::set<std::uint32_t>;
 
-/// Returns the gain from each register's error to the register `output`: reverse accumulation of
-/// the gains. Registers that are given have no error, because later registers refer to their
-/// actual value.
+/// Returns the gain from each register's error to the register `output`: reverse accumulation of the gains.
+/// Registers that are given have no error, because later registers refer to their actual value.
 std::vector<double> gains_to(const LoweredProgram& p, std::uint32_t output) {
   std::vector<double> gain(p.registers.size(), 0);
   gain[output] = 1;
@@ -28,9 +30,230 @@ std::vector<double> gains_to(const LoweredProgram& p, std::uint32_t output) {
   return gain;
 }
 
+/// Error of a register against the exact function of the registers `given`. Their own errors do not count.
+double error_from(const LoweredProgram& p, std::uint32_t target, const Registers& given) {
+  std::vector<double> gain(p.registers.size(), 0);
+  gain[target] = 1;
+  double error = 0;
+  for (std::size_t i = target + 1; i-- > 0;) {
+    if (gain[i] == 0 || given.contains(static_cast<std::uint32_t>(i))) continue;
+    if (i != target && p.registers[i].given) continue;
+    error += gain[i] * p.registers[i].own_error;
+    for (const Register::Use& use : p.registers[i].uses) gain[use.from] += gain[i] * use.gain;
+  }
+  return error;
+}
+
+/// Number of intervals of the determinant. With four times as many, the bound of the robot of bound_check is
+/// the same in four digits.
+constexpr int kParts = 64;
+
+/// Bound of the residual |J x - deviation| of the fixed-point least-squares solution, by matrix norms:
+/// rounding in J' w, w, adj(J J'), det, J J' and J itself, each multiplied by the gain of the later steps.
+/// Intervals would multiply the errors by the inverse's largest entries. The residual keeps the dependence
+/// between the parts. The gains depend on the pose only through the determinant D of J J': with the trace t
+/// of J J', |(J J')^-1| <= (t/2)^2 / D for three directions. The bound is therefore a function of an interval
+/// of D, and the largest of several intervals is a bound for all poses.
+class LeastSquaresBound {
+ public:
+  LeastSquaresBound(const Derivation& derivation, const LoweredProgram& program);
+
+  /// Contributions at the poses whose determinant is in `determinant`. size_mm: |deviation| on the right
+  /// side.
+  std::vector<Contribution> terms(const Interval& determinant, double size_mm) const;
+  /// Upper limit of |K' (K K')^-1|: motion of all axes, each multiplied by its lever, for a deviation of the
+  /// length 1.
+  double gain(const Interval& determinant) const;
+  /// Intervals of the determinant, from the floor to its largest value, in a geometric series.
+  std::vector<Interval> parts() const;
+
+ private:
+  std::pair<double, NodeId> bare(NodeId id) const;
+  std::optional<std::uint32_t> place(NodeId id) const;
+  void insert(Registers& set, NodeId id) const;
+  Registers registers(const std::vector<std::vector<NodeId>>& matrix) const;
+  double error_of(NodeId id, const Registers& given) const;
+  double error_of(const std::vector<std::vector<NodeId>>& matrix, const Registers& given) const;
+  void find_weights(const Registers& given);
+  void find_deviation();
+
+  const Graph& g_;
+  const LeastSquares& least_;
+  const std::vector<AxisDeviation>& outputs_;
+  const LoweredProgram& p_;
+  std::vector<Contribution> deviation_;  // errors of the deviation's own registers, mm in place of um
+  double reciprocal_ = 0, determinant_ = 0, adjugate_ = 0, square_ = 0, jacobian_ = 0, solution_ = 0;
+  double weights_ = 0;  // error of the weights beside that of the sums
+  double sums_ = 0;     // error of adj(K K') times the deviation, which is multiplied by the reciprocal
+};
+
+LeastSquaresBound::LeastSquaresBound(const Derivation& d, const LoweredProgram& p)
+    : g_(d.graph), least_(*d.least_squares), outputs_(d.outputs), p_(p) {
+  const Registers jacobian = registers(least_.jacobian), square = registers(least_.square);
+  jacobian_ = error_of(least_.jacobian, {});
+  square_ = error_of(least_.square, jacobian);
+  adjugate_ = error_of(least_.adjugate, square);
+  determinant_ = error_of(least_.determinant, square);
+  if (const auto reciprocal = place(least_.reciprocal)) reciprocal_ = p_.registers[*reciprocal].own_error;
+  find_deviation();
+  Registers given = registers(least_.adjugate), last = jacobian;
+  for (const NodeId id : least_.deviation) insert(given, id);
+  insert(given, least_.reciprocal);
+  find_weights(given);
+  for (const NodeId id : least_.weights) insert(last, id);
+  double solution = 0;
+  for (std::size_t k = 0; k < outputs_.size(); ++k)
+    solution += std::pow(least_.lever[k] * error_of(outputs_[k].value, last), 2);
+  solution_ = std::sqrt(solution);
+}
+
+std::vector<Contribution> LeastSquaresBound::terms(const Interval& determinant, double size) const {
+  const double floor = std::max(determinant.low, least_.floor);
+  std::vector<Contribution> terms;
+  const auto add = [&](const std::string& name, const std::string& source, double mm) {
+    if (mm > 0) terms.push_back({name, source, mm * maths::kUmPerMm});
+  };
+  // The solution converts a right side of the nearest point back into a length.
+  const double back = least_.nearest ? gain(determinant) : 1;
+  for (const Contribution& c : deviation_) add(c.name, c.source, back * c.bound_um);
+  add("reciprocal of the determinant", "function", reciprocal_ * determinant.high * size);
+  add("determinant", "rounding", determinant_ / floor * size);
+  add("adjugate", "rounding", least_.trace * adjugate_ / floor * size);
+  add("J J'", "rounding", square_ * least_.largest / floor * size);
+  // For the nearest point the columns are used twice: their rotation couples the components across them.
+  add("J", "function", (least_.nearest ? 2 : 1) * jacobian_ * gain(determinant) * size);
+  // J J' w, or J w if the weights are the motions.
+  add("weights", "rounding",
+      (least_.nearest ? std::sqrt(least_.trace) : least_.trace) * (weights_ + sums_ / floor));
+  add("solution", "rounding", std::sqrt(least_.trace) * solution_);
+  return terms;
+}
+
+double LeastSquaresBound::gain(const Interval& determinant) const {
+  const double floor = std::max(determinant.low, least_.floor);
+  // least_.gain is that of the determinant least_.floor.
+  return least_.gain * std::sqrt(least_.floor / floor);
+}
+
+std::vector<Interval> LeastSquaresBound::parts() const {
+  const double low = least_.floor, high = g_[least_.determinant].range.high;
+  if (!(low > 0) || high <= low) return {{low, std::max(low, high)}};
+  const double ratio = std::pow(high / low, 1.0 / kParts);
+  std::vector<Interval> parts;
+  for (double from = low; parts.size() < kParts; from *= ratio) parts.push_back({from, from * ratio});
+  parts.back().high = std::max(parts.back().high, high);
+  return parts;
+}
+
+// A product moves the coefficient out of a scaled node: the register is that of the inner node.
+std::pair<double, NodeId> LeastSquaresBound::bare(NodeId id) const {
+  const Node& n = g_[id];
+  if (!p_.register_of.contains(id) && n.kind == NodeKind::kSum && n.terms.size() == 1 && n.number == 0)
+    return {std::abs(n.terms[0].coefficient), n.terms[0].node};
+  return {1, id};
+}
+
+std::optional<std::uint32_t> LeastSquaresBound::place(NodeId id) const {
+  const auto found = p_.register_of.find(bare(id).second);
+  if (found == p_.register_of.end()) return std::nullopt;
+  return found->second;
+}
+
+void LeastSquaresBound::insert(Registers& set, NodeId id) const {
+  if (const auto at = place(id)) set.insert(*at);
+}
+
+Registers LeastSquaresBound::registers(const std::vector<std::vector<NodeId>>& matrix) const {
+  Registers set;
+  for (const auto& row : matrix)
+    for (const NodeId id : row) insert(set, id);
+  return set;
+}
+
+double LeastSquaresBound::error_of(NodeId id, const Registers& given) const {
+  const auto at = place(id);
+  return at ? bare(id).first * error_from(p_, *at, given) : 0;
+}
+
+/// Root of the sum of squares over a matrix.
+double LeastSquaresBound::error_of(const std::vector<std::vector<NodeId>>& matrix,
+                                   const Registers& given) const {
+  double sum = 0;
+  for (const auto& row : matrix)
+    for (const NodeId id : row) sum += std::pow(error_of(id, given), 2);
+  return std::sqrt(sum);
+}
+
+/// A weight is the reciprocal of the determinant times a sum. The error of the sum counts with the reciprocal
+/// at the pose, which is far below the largest at most poses.
+void LeastSquaresBound::find_weights(const Registers& given) {
+  double weights = 0, sums = 0;
+  for (const NodeId id : least_.weights) {
+    const Node& n = g_[id];
+    const bool product = n.kind == NodeKind::kProduct && n.args[0] != n.args[1];
+    const auto other = product && n.args[0] == least_.reciprocal   ? place(n.args[1])
+                       : product && n.args[1] == least_.reciprocal ? place(n.args[0])
+                                                                   : std::nullopt;
+    if (!other || !place(id)) {
+      weights += std::pow(error_of(id, given), 2);
+      continue;
+    }
+    const NodeId sum = n.args[0] == least_.reciprocal ? n.args[1] : n.args[0];
+    Registers all = given;
+    all.insert(*other);
+    weights += std::pow(error_of(id, all), 2);
+    sums += std::pow(bare(id).first * error_of(sum, given), 2);
+  }
+  weights_ = std::sqrt(weights);
+  sums_ = std::sqrt(sums);
+}
+
+/// The errors of the deviation's own registers, one term per register.
+void LeastSquaresBound::find_deviation() {
+  std::vector<double> square(p_.registers.size(), 0);
+  for (const NodeId id : least_.deviation) {
+    const auto at = place(id);
+    if (!at) continue;
+    const std::vector<double> gain = gains_to(p_, *at);
+    for (std::size_t r = 0; r < square.size(); ++r)
+      square[r] += std::pow(bare(id).first * gain[r] * p_.registers[r].own_error, 2);
+  }
+  for (std::size_t r = 0; r < square.size(); ++r)
+    if (square[r] > 0)
+      deviation_.push_back({p_.registers[r].name, name_of(p_.registers[r].source), std::sqrt(square[r])});
+}
+
 /// Number of outputs before those that correct the direction.
 std::size_t linear_outputs(const Derivation& d) {
   return d.outputs.size() - (d.orientation ? d.orientation->axes.size() : 0);
+}
+
+/// Number of boxes for the bound of one component of the sum of all omitted parts.
+constexpr std::size_t kBoxesOfSum = 2048;
+
+/// Bounds of the components of the sum of all omitted parts, mm. The parts have their largest values at
+/// different poses, and partly cancel.
+std::array<double, 3> omitted_together(const model::Machine& machine, const Derivation& d) {
+  if (d.neglected.empty()) return {0, 0, 0};
+  Graph g = d.graph;
+  NodeVector sum;
+  sum.fill(g.constant(0));
+  double slack_mm = 0;
+  for (const Neglected& n : d.neglected) {
+    const NodeVector part = omitted_part(g, n);
+    for (std::size_t c = 0; c < 3; ++c) sum[c] = g.add(sum[c], part[c]);
+    slack_mm += n.slack_mm;
+  }
+  const TableRange range = [&](const Node& n, const Interval& position) {
+    return table_range(*machine.table_of(n.index[0]), n.index[1], position, n.range);
+  };
+  std::array<double, 3> along{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double low = lower_bound_of(g, sum[c], kBoxesOfSum, range),
+                 high = -lower_bound_of(g, g.scale(-1, sum[c]), kBoxesOfSum, range);
+    along[c] = std::max(std::abs(low), std::abs(high)) + slack_mm;
+  }
+  return along;
 }
 
 double error_along(const AxisDeviation& out, const Neglected& n) {
@@ -54,8 +277,19 @@ void sort_terms(OutputBound& bound) {
                    [](const auto& a, const auto& b) { return a.bound_um > b.bound_um; });
 }
 
+/// Contributions of the omitted parts. Their sum is at most `together`; the bound of each is reduced by the
+/// same factor.
+void add_neglected(std::vector<Contribution>& terms, const std::vector<std::pair<std::string, double>>& parts,
+                   double together) {
+  double apart = 0;
+  for (const auto& [what, size] : parts) apart += size;
+  const double factor = apart > together ? together / apart : 1;
+  for (const auto& [what, size] : parts)
+    if (size > 0) terms.push_back({what, "linearisation", factor * size});
+}
+
 OutputBound bound_of(const model::Machine& machine, const Derivation& d, const LoweredProgram& p,
-                     std::size_t i) {
+                     const std::array<double, 3>& omitted_mm, std::size_t i) {
   const Output& out = p.outputs[i];
   const Register& result = p.registers[out.source];
   OutputBound bound;
@@ -83,7 +317,14 @@ OutputBound bound_of(const model::Machine& machine, const Derivation& d, const L
   for (std::size_t k = linear_outputs(d); k < d.outputs.size(); ++k)
     blame("counts of " + machine.axes[d.outputs[k].axis].name, "rounding",
           0.5 * d.outputs[k].lever * 360 / static_cast<double>(kTurnCounts) * d.outputs[i].row_norm);
-  for (const Neglected& n : d.neglected) blame(n.what, "linearisation", error_along(d.outputs[i], n));
+  std::vector<std::pair<std::string, double>> parts;
+  for (const Neglected& n : d.neglected)
+    parts.emplace_back(n.what, error_along(d.outputs[i], n) * um_per_unit);
+  double together = 0;
+  for (std::size_t c = 0; c < 3; ++c) together += d.outputs[i].row[c] * omitted_mm[c] * um_per_unit;
+  std::vector<Contribution> neglected;
+  add_neglected(neglected, parts, together);
+  for (const Contribution& c : neglected) blame(c.name, c.source, c.bound_um / um_per_unit);
   sort_terms(bound);
   return bound;
 }
@@ -93,150 +334,6 @@ OutputBound bound_of_direction(const model::Machine& machine, const Derivation& 
   bound.axis = machine.axes[d.outputs[i].axis].name;
   bound.deviation_deg = d.graph[d.outputs[i].value].range.magnitude();
   return bound;
-}
-
-/// Error of a register against the exact function of the registers `given`. Their own errors do
-/// not count.
-double error_from(const LoweredProgram& p, std::uint32_t target, const std::set<std::uint32_t>& given) {
-  std::vector<double> gain(p.registers.size(), 0);
-  gain[target] = 1;
-  double error = 0;
-  for (std::size_t i = target + 1; i-- > 0;) {
-    if (gain[i] == 0 || given.contains(static_cast<std::uint32_t>(i))) continue;
-    if (i != target && p.registers[i].given) continue;
-    error += gain[i] * p.registers[i].own_error;
-    for (const Register::Use& use : p.registers[i].uses) gain[use.from] += gain[i] * use.gain;
-  }
-  return error;
-}
-
-/// Bound of the residual J x - deviation of the fixed-point least-squares solution, by matrix
-/// norms: rounding in J' w, w, adj(J J'), det, J J' and J itself, each multiplied by the gain of
-/// the later steps. Intervals would multiply the errors by the inverse's largest entries. The
-/// residual keeps the dependence between the parts.
-class LeastSquaresBound {
- public:
-  LeastSquaresBound(const Derivation& d, const LoweredProgram& p)
-      : g_(d.graph), least_(*d.least_squares), outputs_(d.outputs), p_(p) {}
-
-  /// size: |deviation| on the right side, mm.
-  std::vector<Contribution> terms(double size) const {
-    const double most = least_.largest / least_.floor;
-    const std::set<std::uint32_t> jacobian = registers(least_.jacobian), square = registers(least_.square);
-    std::set<std::uint32_t> pieces = registers(least_.adjugate);
-    for (const NodeId id : least_.deviation) insert(pieces, id);
-    insert(pieces, least_.reciprocal);
-    std::vector<Contribution> terms;
-    const auto add = [&](const char* name, const char* source, double mm) {
-      if (mm > 0) terms.push_back({name, source, mm * maths::kUmPerMm});
-    };
-    add_deviation(terms);
-    if (const auto reciprocal = place(least_.reciprocal)) {
-      const double largest = g_[least_.determinant].range.high;
-      add("reciprocal of the determinant", "function", p_.registers[*reciprocal].own_error * largest * size);
-    }
-    add("determinant", "rounding", error_of(least_.determinant, square) / least_.floor * size);
-    add("adjugate", "rounding", least_.trace * error_of(least_.adjugate, square) / least_.floor * size);
-    add("J J'", "rounding", error_of(least_.square, jacobian) * most * size);
-    // For the nearest point the columns are used twice: their rotation couples the components
-    // across them.
-    add("J", "function", (least_.nearest ? 2 : 1) * error_of(least_.jacobian, {}) * least_.gain * size);
-    Registers last = jacobian;
-    double weights = 0;
-    for (const NodeId id : least_.weights) {
-      weights += std::pow(error_of(id, pieces), 2);
-      insert(last, id);
-    }
-    // J J' w, or J w if the weights are the motions.
-    add("weights", "rounding",
-        (least_.nearest ? std::sqrt(least_.trace) : least_.trace) * std::sqrt(weights));
-    double solution = 0;
-    for (std::size_t k = 0; k < outputs_.size(); ++k)
-      solution += std::pow(least_.lever[k] * error_of(outputs_[k].value, last), 2);
-    add("solution", "rounding", std::sqrt(least_.trace * solution));
-    return terms;
-  }
-
- private:
-  // A product moves the coefficient out of a scaled node: the register is that of the inner node.
-  std::pair<double, NodeId> bare(NodeId id) const {
-    const Node& n = g_[id];
-    if (!p_.register_of.contains(id) && n.kind == NodeKind::kSum && n.terms.size() == 1 && n.number == 0)
-      return {std::abs(n.terms[0].coefficient), n.terms[0].node};
-    return {1, id};
-  }
-  std::optional<std::uint32_t> place(NodeId id) const {
-    const auto found = p_.register_of.find(bare(id).second);
-    if (found == p_.register_of.end()) return std::nullopt;
-    return found->second;
-  }
-  void insert(std::set<std::uint32_t>& set, NodeId id) const {
-    if (const auto at = place(id)) set.insert(*at);
-  }
-  std::set<std::uint32_t> registers(const std::vector<std::vector<NodeId>>& matrix) const {
-    std::set<std::uint32_t> set;
-    for (const auto& row : matrix)
-      for (const NodeId id : row) insert(set, id);
-    return set;
-  }
-  double error_of(NodeId id, const std::set<std::uint32_t>& given) const {
-    const auto at = place(id);
-    return at ? bare(id).first * error_from(p_, *at, given) : 0;
-  }
-  /// Root of the sum of squares over a matrix.
-  double error_of(const std::vector<std::vector<NodeId>>& matrix,
-                  const std::set<std::uint32_t>& given) const {
-    double sum = 0;
-    for (const auto& row : matrix)
-      for (const NodeId id : row) sum += std::pow(error_of(id, given), 2);
-    return std::sqrt(sum);
-  }
-  /// Adds the errors of the deviation's own registers, one term per register, multiplied by the
-  /// gain of the solution. The solution converts a right side of the nearest point back into a
-  /// length.
-  void add_deviation(std::vector<Contribution>& terms) const {
-    const double back = least_.nearest ? least_.gain : 1;
-    std::vector<double> square(p_.registers.size(), 0);
-    for (const NodeId id : least_.deviation) {
-      const auto at = place(id);
-      if (!at) continue;
-      const std::vector<double> gain = gains_to(p_, *at);
-      for (std::size_t r = 0; r < gain.size(); ++r)
-        square[r] += std::pow(back * bare(id).first * gain[r] * p_.registers[r].own_error, 2);
-    }
-    for (std::size_t r = 0; r < square.size(); ++r)
-      if (square[r] > 0)
-        terms.push_back(
-            {p_.registers[r].name, name_of(p_.registers[r].source), std::sqrt(square[r]) * maths::kUmPerMm});
-  }
-
-  const Graph& g_;
-  const LeastSquares& least_;
-  const std::vector<AxisDeviation>& outputs_;
-  const LoweredProgram& p_;
-};
-
-std::vector<OutputBound> least_squares_bounds(const model::Machine& machine, const Derivation& d,
-                                              const LoweredProgram& p, double size_mm) {
-  std::vector<Contribution> shared = LeastSquaresBound(d, p).terms(size_mm);
-  for (const Neglected& n : d.neglected)
-    shared.push_back({n.what, "linearisation", n.bound_mm * maths::kUmPerMm});
-  double counts = 0;
-  for (const AxisDeviation& out : d.outputs)
-    counts +=
-        0.5 * out.lever * (machine.axes[out.axis].rotary ? 360 / static_cast<double>(kTurnCounts) : 1e-6);
-  shared.push_back({"outputs in counts of the axes", "rounding", counts * maths::kUmPerMm});
-  std::vector<OutputBound> bounds;
-  for (const AxisDeviation& out : d.outputs) {
-    OutputBound bound;
-    bound.axis = machine.axes[out.axis].name;
-    bound.contributions = shared;
-    for (const Contribution& c : shared) share_of(bound, c.source) += c.bound_um;
-    bound.deviation_um = maths::kUmPerMm * d.least_squares->spread_mm;
-    sort_terms(bound);
-    bounds.push_back(bound);
-  }
-  return bounds;
 }
 
 /// Largest correction of each linear output, axis units.
@@ -275,6 +372,31 @@ std::array<double, 3> slopes_of(const Derivation& d, const NodeVector& v, std::s
 
 double norm_of(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
 
+double turning_of(const Derivation& d, std::size_t axis) {
+  const auto found = d.turning.find(axis);
+  return found == d.turning.end() ? 0 : found->second;
+}
+
+/// How the motion of axis j bends with axis k: mm for one unit of both. `first`: from the command on, which
+/// halves the error of a straight line. `later`: between two positions near the command.
+struct Bend {
+  double first = 0, later = 0;
+};
+
+Bend bend_of(const Derivation& d, std::size_t j, std::size_t k) {
+  const std::size_t axis = d.outputs[k].axis;
+  const double turning = turning_of(d, axis);
+  Bend result;
+  for (const AxisColumn& column : d.columns)
+    if (column.axis == d.outputs[j].axis) {
+      const double bend = norm_of(slopes_of(d, column.direction, axis));
+      // The frame's own rotation acts on one side only, so it counts for both.
+      result.first += 0.5 * bend + turning * column.norm * (j == k ? 0.5 : 1);
+      result.later += bend + 2 * turning * column.norm;
+    }
+  return result;
+}
+
 /// Returns the remaining error of a step of Newton's iteration at the tool point, mm. Moving by
 /// `step`, within `reach` of the command, changes deviation(q) and bends the nominal motion. A
 /// first step begins at the command (step = reach), which halves the error of a straight line.
@@ -282,26 +404,104 @@ double left_by_step(const Derivation& d, const std::vector<double>& reach, const
                     bool first) {
   std::array<double, 3> slope{};
   double turned = 0, bent = 0;
-  const auto turning = [&](std::size_t axis) {
-    const auto found = d.turning.find(axis);
-    return found == d.turning.end() ? 0 : found->second;
-  };
   for (std::size_t k = 0; k < step.size(); ++k) {
     const std::size_t axis = d.outputs[k].axis;
     const std::array<double, 3> own = slopes_of(d, d.deviation, axis);
     for (std::size_t i = 0; i < 3; ++i) slope[i] += own[i] * step[k];
-    turned += turning(axis) * step[k] * d.spread_mm;
-    for (std::size_t j = 0; j < step.size(); ++j)
-      for (const AxisColumn& column : d.columns)
-        if (column.axis == d.outputs[j].axis) {
-          const double bend = norm_of(slopes_of(d, column.direction, axis));
-          // The frame's own rotation acts on one side only, so it counts for both.
-          const double part = first ? 0.5 * bend + turning(axis) * column.norm * (j == k ? 0.5 : 1)
-                                    : bend + 2 * turning(axis) * column.norm;
-          bent += part * reach[k] * step[j];
-        }
+    turned += turning_of(d, axis) * step[k] * d.spread_mm;
+    for (std::size_t j = 0; j < step.size(); ++j) {
+      const Bend bend = bend_of(d, j, k);
+      bent += (first ? bend.first : bend.later) * reach[k] * step[j];
+    }
   }
   return norm_of(slope) + turned + bent;
+}
+
+double sum_um(const std::vector<Contribution>& terms) {
+  double sum = 0;
+  for (const Contribution& c : terms) sum += c.bound_um;
+  return sum;
+}
+
+/// Newton's steps of a least-squares correction. The motions are those of all axes, each multiplied by its
+/// lever, as one vector, mm. A sum over the axes is at most a root of a sum of squares (Cauchy, Schwarz).
+class LeastSteps {
+ public:
+  explicit LeastSteps(const Derivation& d) {
+    double slope = 0, turned = 0, first = 0, later = 0;
+    const std::vector<double>& lever = d.least_squares->lever;
+    for (std::size_t k = 0; k < d.outputs.size(); ++k) {
+      const std::size_t axis = d.outputs[k].axis;
+      slope += std::pow(norm_of(slopes_of(d, d.deviation, axis)) / lever[k], 2);
+      turned += std::pow(turning_of(d, axis) * d.spread_mm / lever[k], 2);
+      for (std::size_t j = 0; j < d.outputs.size(); ++j) {
+        const Bend bend = bend_of(d, j, k);
+        first += std::pow(bend.first / (lever[j] * lever[k]), 2);
+        later += std::pow(bend.later / (lever[j] * lever[k]), 2);
+      }
+    }
+    slope_ = std::sqrt(slope) + std::sqrt(turned);
+    first_ = std::sqrt(first);
+    later_ = std::sqrt(later);
+  }
+  /// As left_by_step.
+  double left(double reach_mm, double step_mm, bool first) const {
+    return slope_ * step_mm + (first ? first_ : later_) * reach_mm * step_mm;
+  }
+
+ private:
+  double slope_ = 0, first_ = 0, later_ = 0;
+};
+
+/// Upper limit of the deviation that the last evaluation corrects, mm, at the poses of a part of the
+/// determinant's range. Far from singular poses the correction is short, so that little remains of it.
+double last_size(const Derivation& d, const LeastSquaresBound& least, const LeastSteps& steps,
+                 const Interval& part) {
+  // The component across the axes is the same in every evaluation.
+  if (d.before.empty() || d.least_squares->nearest) return d.spread_mm;
+  double error = sum_um(least.terms(part, d.spread_mm)) / maths::kUmPerMm;
+  for (const Neglected& n : d.before.back().neglected) error += n.bound_mm;
+  const double reach = least.gain(part) * d.spread_mm;
+  double left = steps.left(reach, reach, true);
+  for (std::size_t i = 1; i < d.before.size(); ++i)
+    left = steps.left(reach, least.gain(part) * (left + error), false);
+  return std::min(d.spread_mm, left + error);
+}
+
+/// The contributions of the least squares, at the poses where their sum is largest.
+std::vector<Contribution> worst_terms(const Derivation& d, const LeastSquaresBound& least) {
+  const LeastSteps steps(d);
+  std::vector<Contribution> worst;
+  for (const Interval& part : least.parts()) {
+    std::vector<Contribution> terms = least.terms(part, last_size(d, least, steps, part));
+    if (worst.empty() || sum_um(terms) > sum_um(worst)) worst = std::move(terms);
+  }
+  return worst;
+}
+
+std::vector<OutputBound> least_squares_bounds(const model::Machine& machine, const Derivation& d,
+                                              const LeastSquaresBound& least,
+                                              const std::array<double, 3>& omitted_mm) {
+  std::vector<Contribution> shared = worst_terms(d, least);
+  std::vector<std::pair<std::string, double>> parts;
+  for (const Neglected& n : d.neglected) parts.emplace_back(n.what, n.bound_mm * maths::kUmPerMm);
+  add_neglected(shared, parts, norm_of(omitted_mm) * maths::kUmPerMm);
+  double counts = 0;
+  for (const AxisDeviation& out : d.outputs)
+    counts +=
+        0.5 * out.lever * (machine.axes[out.axis].rotary ? 360 / static_cast<double>(kTurnCounts) : 1e-6);
+  shared.push_back({"outputs in counts of the axes", "rounding", counts * maths::kUmPerMm});
+  std::vector<OutputBound> bounds;
+  for (const AxisDeviation& out : d.outputs) {
+    OutputBound bound;
+    bound.axis = machine.axes[out.axis].name;
+    bound.contributions = shared;
+    for (const Contribution& c : shared) share_of(bound, c.source) += c.bound_um;
+    bound.deviation_um = maths::kUmPerMm * d.least_squares->spread_mm;
+    sort_terms(bound);
+    bounds.push_back(bound);
+  }
+  return bounds;
 }
 
 /// Returns the error of an evaluation before the last along output k, axis units: its program and
@@ -400,12 +600,6 @@ std::vector<Remainder> remainders_of(const Derivation& d, const LoweredProgram& 
   return left;
 }
 
-double sum_um(const std::vector<Contribution>& terms) {
-  double sum = 0;
-  for (const Contribution& c : terms) sum += c.bound_um;
-  return sum;
-}
-
 }  // namespace
 
 const char* name_of(ErrorSource source) {
@@ -427,21 +621,22 @@ const char* name_of(ErrorSource source) {
 std::vector<OutputBound> bounds_of(const model::Machine& machine, const Derivation& d,
                                    const LoweredProgram& p) {
   if (d.outputs.empty()) return {};
+  std::optional<LeastSquaresBound> least;
+  if (d.least_squares) least.emplace(d, p);
   double least_mm = 0;
-  if (d.least_squares && !d.before.empty()) {
-    least_mm = sum_um(LeastSquaresBound(d, p).terms(d.spread_mm)) / maths::kUmPerMm;
+  if (least && !d.before.empty()) {
+    const std::vector<Interval> parts = least->parts();
+    least_mm = sum_um(least->terms({parts.front().low, parts.back().high}, d.spread_mm)) / maths::kUmPerMm;
     for (const Neglected& n : d.before.back().neglected) least_mm += n.bound_mm;
   }
   const std::vector<Remainder> remainders = remainders_of(d, p, least_mm);
+  const std::array<double, 3> omitted_mm = omitted_together(machine, d);
   std::vector<OutputBound> bounds;
-  if (d.least_squares) {
-    // The component across the axes is the same in every evaluation.
-    const bool whole = d.before.empty() || d.least_squares->nearest;
-    const double size = whole ? d.spread_mm : remainders[remainders.size() - 2].point_mm + least_mm;
-    bounds = least_squares_bounds(machine, d, p, std::min(size, d.spread_mm));
+  if (least) {
+    bounds = least_squares_bounds(machine, d, *least, omitted_mm);
   } else {
     for (std::size_t i = 0; i < p.outputs.size(); ++i)
-      bounds.push_back(i < linear_outputs(d) ? bound_of(machine, d, p, i)
+      bounds.push_back(i < linear_outputs(d) ? bound_of(machine, d, p, omitted_mm, i)
                                              : bound_of_direction(machine, d, i));
   }
   const double left_mm = remainders.back().point_mm;

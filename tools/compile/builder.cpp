@@ -370,6 +370,9 @@ ProgramBuilder::Id ProgramBuilder::plain(Instruction step, int fraction_bits, co
 
 ProgramBuilder::Id ProgramBuilder::reformat(Id a, int fraction_bits) {
   if (at(a).fraction_bits == fraction_bits) return a;
+  // A constant in another format is another constant, without an instruction.
+  if (a < kFirstChannel && std::abs(std::ldexp(at(a).range.low, fraction_bits)) < kMaxFactor)
+    return constant(at(a).range.low, fraction_bits);
   const Factors f = factors_for(std::ldexp(1.0, fraction_bits - at(a).fraction_bits), 0);
   if (f.shift < 0 || f.first == 0)
     throw text::InputError(

@@ -38,6 +38,13 @@ constexpr const char* kPreface =
     "to counts\n"
     "# (bound.json).\n\n";
 
+constexpr const char* kLeastSquares =
+    "# The correction is a least-squares solution. The bound in bound.json is that of its residual at the "
+    "tool "
+    "point. The\n"
+    "# compiler composes it by matrix norms, in double precision (tools/docs/compile.md). This file does not "
+    "prove it.\n";
+
 std::string within(double magnitude) { return fmt::format("[-{0},{0}]", exact(magnitude)); }
 
 class Script {
@@ -234,6 +241,7 @@ std::string print_certificate(const model::Machine& machine, const CompiledMachi
     if (!p.registers[out.source].given)
       claim(out.source, "deviation of axis " + axis.name, axis.rotary ? "deg" : "mm");
   }
+  if (compiled.least_squares) claims += kLeastSquares;
   return fmt::format(kPreface, machine.name, compiled.fingerprint, claims) + script.text();
 }
 

@@ -192,8 +192,17 @@ Solver solve_square(Derivation& d, Algebra& algebra, const std::vector<AxisColum
   };
 }
 
+/// A number with few binary digits, slightly above another: as a limit it has no error in any format.
+double above(double magnitude) {
+  constexpr int kDigits = 16;  // binary: the limit is at most 2^-15 above, and exact in every format
+  int exponent = 0;
+  const double mantissa = std::frexp(magnitude, &exponent);
+  return std::ldexp(std::ceil(std::ldexp(mantissa, kDigits)), exponent - kDigits);
+}
+
 NodeId limited(Graph& g, NodeId node, double magnitude) {
   if (g[node].range.magnitude() <= 1.25 * magnitude) return node;
+  magnitude = above(magnitude);
   if (g[node].range.low < -magnitude) node = g.choice(NodeKind::kMax, node, g.constant(-magnitude));
   return g[node].range.high > magnitude ? g.choice(NodeKind::kMin, node, g.constant(magnitude)) : node;
 }

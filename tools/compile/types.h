@@ -16,11 +16,26 @@ namespace vernier::compile {
 
 using NodeVector = std::array<NodeId, 3>;
 
+/// A rotation about a coordinate axis (0..2: X Y Z) by an angle times the factor `sense`.
+struct Turn {
+  int axis = 0;
+  NodeId angle_deg = 0;
+  double sense = 1;
+};
+
 /// A part of the exact deviation that the error equation omits, with its bound over the declared ranges.
 struct Neglected {
   std::string what;                // description: "second order of rZ in transform 3 (tool)"
   double bound_mm;                 // bound of the norm
   std::array<double, 3> along_mm;  // bound of each component in the frame of the deviation
+  /// The omitted part as a vector: (R(turn) - 1) times the vector `of`, or of this rotation only the part of
+  /// one order. The nominal rotations `to_frame`, one after the other, bring it into the frame of the
+  /// deviation.
+  Turn turn = {};
+  NodeVector of = {};
+  int order = 0;  // of the sine or cosine of the angle; 0: the whole rotation
+  std::vector<Turn> to_frame = {};
+  double slack_mm = 0;  // upper limit of the difference between this vector and the omitted part
 };
 
 /// The deviation of the tool point, expressed as the motion of one axis. A motion of the axis by `value` has

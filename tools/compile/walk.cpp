@@ -2,6 +2,7 @@
 #include "tools/compile/walk.h"
 
 #include <cmath>
+#include <utility>
 
 #include "tools/compile/symbolic/calculus.h"
 #include "tools/compile/symbolic/functions.h"
@@ -48,7 +49,58 @@ std::vector<Step> steps_of(const model::Transform& t, const char* branch, Transl
   return steps;
 }
 
+// Cosine and sine. They are exact if the angle is a multiple of 90 deg, so that a machine with
+// right angles stays sparse.
+std::pair<NodeId, NodeId> direction_of(Graph& g, NodeId angle_deg) {
+  const auto value = g.constant_value(angle_deg);
+  if (!value) return {g.function(Function::kCos, angle_deg), g.function(Function::kSin, angle_deg)};
+  const double quarter = *value / 90;
+  if (quarter != std::round(quarter))
+    return {g.constant(std::cos(*value * maths::kRadPerDeg)),
+            g.constant(std::sin(*value * maths::kRadPerDeg))};
+  const int q = ((static_cast<int>(std::fmod(quarter, 4)) % 4) + 4) % 4;
+  constexpr std::array<double, 4> kCosine = {1, 0, -1, 0}, kSine = {0, 1, 0, -1};
+  return {g.constant(kCosine[static_cast<std::size_t>(q)]), g.constant(kSine[static_cast<std::size_t>(q)])};
+}
+
 }  // namespace
+
+NodeVector turned(Graph& g, const NodeVector& v, const Turn& turn) {
+  const auto [c, s] = direction_of(g, g.scale(turn.sense, turn.angle_deg));
+  const auto a = static_cast<std::size_t>((turn.axis + 1) % 3),
+             b = static_cast<std::size_t>((turn.axis + 2) % 3);
+  NodeVector out = v;
+  out[a] = g.subtract(g.product(c, v[a]), g.product(s, v[b]));
+  out[b] = g.add(g.product(s, v[a]), g.product(c, v[b]));
+  return out;
+}
+
+NodeVector omitted_part(Graph& g, const Neglected& n) {
+  const auto a = static_cast<std::size_t>((n.turn.axis + 1) % 3),
+             b = static_cast<std::size_t>((n.turn.axis + 2) % 3);
+  const NodeId angle = g.scale(maths::kRadPerDeg, n.turn.angle_deg);
+  NodeId sine = g.constant(0), bend = g.constant(0);
+  if (n.order == 0) {
+    sine = g.function(Function::kSin, n.turn.angle_deg);
+    bend = g.sum(1, {{-1, g.function(Function::kCos, n.turn.angle_deg)}});
+  } else {
+    // sin x = x - x^3 / 6 + x^5 / 120, 1 - cos x = x^2 / 2 - x^4 / 24 + x^6 / 720.
+    double factor = n.order % 4 < 2 ? 1 : -1;
+    if (n.order % 2 == 0) factor = -factor;
+    NodeId power = angle;
+    for (int i = 2; i <= n.order; ++i) {
+      power = g.product(power, angle);
+      factor /= i;
+    }
+    (n.order % 2 == 0 ? bend : sine) = g.scale(factor, power);
+  }
+  NodeVector v;
+  v.fill(g.constant(0));
+  v[a] = g.sum(0, {{-1, g.product(bend, n.of[a])}, {-1, g.product(sine, n.of[b])}});
+  v[b] = g.sum(0, {{1, g.product(sine, n.of[a])}, {-1, g.product(bend, n.of[b])}});
+  for (const Turn& turn : n.to_frame) v = turned(g, v, turn);
+  return v;
+}
 
 std::vector<Step> all_steps(const model::Machine& machine, Translator& translate, Graph& graph) {
   std::vector<Step> steps;
@@ -138,50 +190,31 @@ double Walk::norm_of(const NodeVector& v) const {
 double Walk::reach_mm() const { return std::min(reach_mm_, norm_of(nominal_)); }
 double Walk::spread_mm() const { return std::min(spread_mm_, norm_of(deviation_)); }
 
-// Cosine and sine. They are exact if the angle is a multiple of 90 deg, so that a machine with
-// right angles stays sparse.
-std::pair<NodeId, NodeId> Walk::direction_of(NodeId angle_deg) {
-  const auto value = g_.constant_value(angle_deg);
-  if (!value) return {g_.function(Function::kCos, angle_deg), g_.function(Function::kSin, angle_deg)};
-  const double quarter = *value / 90;
-  if (quarter != std::round(quarter))
-    return {g_.constant(std::cos(*value * maths::kRadPerDeg)),
-            g_.constant(std::sin(*value * maths::kRadPerDeg))};
-  const int q = ((static_cast<int>(std::fmod(quarter, 4)) % 4) + 4) % 4;
-  constexpr std::array<double, 4> kCosine = {1, 0, -1, 0}, kSine = {0, 1, 0, -1};
-  return {g_.constant(kCosine[static_cast<std::size_t>(q)]), g_.constant(kSine[static_cast<std::size_t>(q)])};
-}
-
-NodeVector Walk::turned(const NodeVector& v, int axis, NodeId angle_deg) {
-  const auto [c, s] = direction_of(angle_deg);
-  const auto a = static_cast<std::size_t>((axis + 1) % 3), b = static_cast<std::size_t>((axis + 2) % 3);
-  NodeVector out = v;
-  out[a] = g_.subtract(g_.product(c, v[a]), g_.product(s, v[b]));
-  out[b] = g_.add(g_.product(s, v[a]), g_.product(c, v[b]));
-  return out;
-}
-
 void Walk::turn_nominal(const Step& step) {
   if (g_.is_zero(step.by.nominal)) return;
-  nominal_ = turned(nominal_, step.axis, step.by.nominal);
+  const Turn turn{step.axis, step.by.nominal};
+  nominal_ = turned(g_, nominal_, turn);
   if (frozen_) {
     turns_.push_back(step);
   } else {
-    deviation_ = turned(deviation_, step.axis, step.by.nominal);
-    for (auto& [name, part] : parts_) part = turned(part, step.axis, step.by.nominal);
-    for (Neglected& n : neglected_) turn_sizes(n.along_mm, step.axis, step.by.nominal);
+    deviation_ = turned(g_, deviation_, turn);
+    for (auto& [name, part] : parts_) part = turned(g_, part, turn);
+    for (Neglected& n : neglected_) {
+      turn_sizes(n.along_mm, step.axis, step.by.nominal);
+      n.to_frame.push_back(turn);
+    }
   }
 }
 
 NodeVector Walk::deviation_here() {
   NodeVector v = deviation_;
-  for (const Step& step : turns_) v = turned(v, step.axis, step.by.nominal);
+  for (const Step& step : turns_) v = turned(g_, v, {step.axis, step.by.nominal});
   return v;
 }
 
 NodeVector Walk::seen_from_frame(NodeVector v) {
   for (auto step = turns_.rbegin(); step != turns_.rend(); ++step)
-    v = turned(v, step->axis, g_.scale(-1, step->by.nominal));
+    v = turned(g_, v, {step->axis, step->by.nominal, -1});
   return v;
 }
 
@@ -214,22 +247,33 @@ void Walk::split_turn(const Step& step, const NodeVector& point, const NodeVecto
     add_part(step.where + ": higher orders", seen_from_frame(rest));
 }
 
+double Walk::size_of(const Step& step) const {
+  return g_[step.by.delta].range.magnitude() * maths::kRadPerDeg;
+}
+
 // The omitted part of a rotation is perpendicular to its axis.
-bool Walk::small(double bound_mm, const Step& step, const char* what) {
+bool Walk::small(double bound_mm, const Step& step, const NodeVector& of, int order, const char* what) {
   if (bound_mm > neglect_mm_) return false;
   if (bound_mm == 0) return true;
-  std::array<double, 3> along{bound_mm, bound_mm, bound_mm};
-  along[static_cast<std::size_t>(step.axis)] = 0;
-  for (auto turn = turns_.rbegin(); turn != turns_.rend(); ++turn)
-    turn_sizes(along, turn->axis, turn->by.nominal);
-  neglected_.push_back({what + step.where, bound_mm, along});
+  Neglected n{what + step.where, bound_mm, {bound_mm, bound_mm, bound_mm}};
+  n.along_mm[static_cast<std::size_t>(step.axis)] = 0;
+  n.turn = {step.axis, step.by.delta};
+  n.of = of;
+  n.order = order;
+  // The next order of a sine or cosine is smaller by at least the square of the angle over 12.
+  if (order > 0) n.slack_mm = bound_mm * std::pow(size_of(step), 2) / 12;
+  for (auto turn = turns_.rbegin(); turn != turns_.rend(); ++turn) {
+    turn_sizes(n.along_mm, turn->axis, turn->by.nominal);
+    n.to_frame.push_back({turn->axis, turn->by.nominal, -1});
+  }
+  neglected_.push_back(std::move(n));
   return true;
 }
 
 // Sizes of components after a rotation. The size of a cosine or sine does not depend on its
 // direction.
 void Walk::turn_sizes(std::array<double, 3>& sizes, int axis, NodeId angle_deg) {
-  const auto [c, s] = direction_of(angle_deg);
+  const auto [c, s] = direction_of(g_, angle_deg);
   const double cosine = g_[c].range.magnitude(), sine = g_[s].range.magnitude();
   double &a = sizes[static_cast<std::size_t>((axis + 1) % 3)],
          &b = sizes[static_cast<std::size_t>((axis + 2) % 3)];
@@ -244,19 +288,22 @@ void Walk::deviate_by_turn(const Step& step) {
   if (g_.is_zero(step.by.delta)) return;
   const auto a = static_cast<std::size_t>((step.axis + 1) % 3),
              b = static_cast<std::size_t>((step.axis + 2) % 3);
-  const double size = g_[step.by.delta].range.magnitude() * maths::kRadPerDeg;
+  const double size = size_of(step);
+  // The error equation does not rotate what it has omitted.
+  for (Neglected& n : neglected_) n.slack_mm += n.bound_mm * size;
   NodeVector point = nominal_;
   const NodeVector so_far = deviation_here();
   const NodeVector across = {g_.constant(0), so_far[a], so_far[b]};
   const double across_mm = std::min(spread_mm_, norm_of(across)),
                nominal_mm = std::min(reach_mm_, norm_of({g_.constant(0), point[a], point[b]}));
   double reach = nominal_mm;
-  if (!small(2 * std::sin(std::min(size, 3.0) / 2) * across_mm, step, "turn of the deviation by ")) {
+  if (!small(2 * std::sin(std::min(size, 3.0) / 2) * across_mm, step, so_far, 0,
+             "turn of the deviation by ")) {
     point = plus(point, so_far);
     reach += across_mm;
   }
   spread_mm_ += 2 * std::sin(std::min(size, 3.0) / 2) * (nominal_mm + across_mm);
-  const NodeId sine = sine_of(step, size, reach), bend = bend_of(step, size, reach);
+  const NodeId sine = sine_of(step, point, size, reach), bend = bend_of(step, point, size, reach);
   NodeVector moved;
   moved.fill(g_.constant(0));
   moved[a] = g_.sum(0, {{-1, g_.product(bend, point[a])}, {-1, g_.product(sine, point[b])}});
@@ -265,23 +312,23 @@ void Walk::deviate_by_turn(const Step& step) {
   split_turn(step, point, moved);
 }
 
-NodeId Walk::sine_of(const Step& step, double size, double reach) {
+NodeId Walk::sine_of(const Step& step, const NodeVector& point, double size, double reach) {
   if (const auto angle = g_.constant_value(step.by.delta))
     return g_.constant(std::sin(*angle * maths::kRadPerDeg));
   const NodeId angle = g_.scale(maths::kRadPerDeg, step.by.delta);
-  if (small(std::pow(size, 3) / 6 * reach, step, "third order of ")) return angle;
-  if (small(std::pow(size, 5) / 120 * reach, step, "fifth order of "))
+  if (small(std::pow(size, 3) / 6 * reach, step, point, 3, "third order of ")) return angle;
+  if (small(std::pow(size, 5) / 120 * reach, step, point, 5, "fifth order of "))
     return g_.sum(0, {{1, angle}, {-1.0 / 6, g_.product(angle, g_.product(angle, angle))}});
   return g_.function(Function::kSin, step.by.delta);
 }
 
-NodeId Walk::bend_of(const Step& step, double size, double reach) {
+NodeId Walk::bend_of(const Step& step, const NodeVector& point, double size, double reach) {
   if (const auto angle = g_.constant_value(step.by.delta))
     return g_.constant(1 - std::cos(*angle * maths::kRadPerDeg));
-  if (small(size * size / 2 * reach, step, "second order of ")) return g_.constant(0);
+  if (small(size * size / 2 * reach, step, point, 2, "second order of ")) return g_.constant(0);
   const NodeId angle = g_.scale(maths::kRadPerDeg, step.by.delta), square = g_.product(angle, angle);
-  if (small(std::pow(size, 4) / 24 * reach, step, "fourth order of ")) return g_.scale(0.5, square);
-  if (small(std::pow(size, 6) / 720 * reach, step, "sixth order of "))
+  if (small(std::pow(size, 4) / 24 * reach, step, point, 4, "fourth order of ")) return g_.scale(0.5, square);
+  if (small(std::pow(size, 6) / 720 * reach, step, point, 6, "sixth order of "))
     return g_.sum(0, {{0.5, square}, {-1.0 / 24, g_.product(square, square)}});
   return g_.sum(1, {{-1, g_.function(Function::kCos, step.by.delta)}});
 }

@@ -32,6 +32,13 @@ std::vector<Step> all_steps(const model::Machine& machine, Translator& translate
 /// Throws std::domain_error if the motion of the point contains a step.
 NodeVector motion_of(Graph& graph, NodeId axis, const NodeVector& point, const Step* last_turn);
 
+/// Returns a vector after a rotation.
+NodeVector turned(Graph& graph, const NodeVector& v, const Turn& turn);
+
+/// Returns an omitted part as a vector in the frame of the deviation. It differs from the exact part by at
+/// most its slack_mm.
+NodeVector omitted_part(Graph& graph, const Neglected& neglected);
+
 /// Moves a point through the chain, and computes its nominal position and the deviation of the actual chain.
 class Walk {
  public:
@@ -62,19 +69,18 @@ class Walk {
   NodeVector only(std::size_t axis, NodeId value);
   NodeVector plus(const NodeVector& a, const NodeVector& b);
   double norm_of(const NodeVector& v) const;
-  std::pair<NodeId, NodeId> direction_of(NodeId angle_deg);
-  NodeVector turned(const NodeVector& v, int axis, NodeId angle_deg);
   void turn_nominal(const Step& step);
   NodeVector deviation_here();
   NodeVector seen_from_frame(NodeVector v);
   void add_deviation(const NodeVector& v);
   void add_part(const std::string& name, const NodeVector& v);
   void split_turn(const Step& step, const NodeVector& point, const NodeVector& all);
-  bool small(double bound_mm, const Step& step, const char* what);
+  double size_of(const Step& step) const;  // upper limit of the error of a rotation, rad
+  bool small(double bound_mm, const Step& step, const NodeVector& of, int order, const char* what);
   void turn_sizes(std::array<double, 3>& sizes, int axis, NodeId angle_deg);
   void deviate_by_turn(const Step& step);
-  NodeId sine_of(const Step& step, double size, double reach);
-  NodeId bend_of(const Step& step, double size, double reach);
+  NodeId sine_of(const Step& step, const NodeVector& point, double size, double reach);
+  NodeId bend_of(const Step& step, const NodeVector& point, double size, double reach);
 
   Graph& g_;
   double neglect_mm_;

@@ -29,7 +29,11 @@ constexpr std::size_t kMostSamples = 400;
 constexpr std::size_t kBlocks = 20;
 /// More feeds than these were not set by a user.
 constexpr std::size_t kMostFeeds = 12;
-constexpr double kTail = 0.025;  // on either side of 95 %
+constexpr double kTail = 0.025;         // on either side of 95 %
+constexpr double kSamePosition = 1e-6;  // mm or deg: 1 nm, the last digit of a measurement file
+/// Significant digits of a feed: of one pose, and of a group of rows with one feed. A measured feed varies by
+/// some parts in a thousand. Feeds that a user sets differ by several per cent.
+constexpr int kDigitsOfPose = 3, kDigitsOfGroup = 2;
 
 double rounded(double value, double step) { return std::round(value / step) * step; }
 
@@ -55,15 +59,15 @@ std::vector<double> pose_of(const model::Measurement& m, std::size_t row) {
   const auto at = static_cast<Index>(row);
   std::vector<double> key;
   for (std::size_t i = 0; i < m.states.axis.size(); ++i) {
-    key.push_back(rounded(m.states.axis[i][at], 1e-6));
+    key.push_back(rounded(m.states.axis[i][at], kSamePosition));
     key.push_back(m.states.direction[i][at]);
   }
-  key.push_back(digits(m.states.feed[at], 3));
-  for (const model::Column& normal : m.states.normal) key.push_back(rounded(normal[at], 1e-6));
+  key.push_back(digits(m.states.feed[at], kDigitsOfPose));
+  for (const model::Column& normal : m.states.normal) key.push_back(rounded(normal[at], kSamePosition));
   for (const Eigen::Matrix3Xd* point : {&m.centre, &m.nominal_point})
     for (Index k = 0; k < 3; ++k) {
       const double value = (*point)(k, at);
-      key.push_back(std::isnan(value) ? 0 : rounded(value, 1e-6));
+      key.push_back(std::isnan(value) ? 0 : rounded(value, kSamePosition));
     }
   return key;
 }
@@ -169,7 +173,7 @@ struct PickedRows {
   bool takes(const Side& side, const model::Observation& o) const {
     if (side.sample[o.row] == kNone) return false;
     if (kind ? o.kind != *kind : model::is_rotation(o.kind)) return false;
-    return !feed || digits(side.rows.states.feed[static_cast<Index>(o.row)], 2) == *feed;
+    return !feed || digits(side.rows.states.feed[static_cast<Index>(o.row)], kDigitsOfGroup) == *feed;
   }
 };
 
@@ -316,7 +320,7 @@ std::vector<double> feeds_of(const Side& before, const Side& after) {
     return {};
   std::set<double> feeds;
   for (const Side* side : {&before, &after})
-    for (const double feed : side->rows.states.feed) feeds.insert(digits(feed, 2));
+    for (const double feed : side->rows.states.feed) feeds.insert(digits(feed, kDigitsOfGroup));
   if (feeds.size() < 2 || feeds.size() > kMostFeeds) return {};
   return {feeds.begin(), feeds.end()};
 }

@@ -14,7 +14,10 @@ namespace vernier::residual {
 namespace {
 
 constexpr int kMostPerSide = 5;     // cells that a picture of a volume can show
+constexpr int kMostOnLine = 20;     // cells of a line: four times as many, because a line has no depth
 constexpr double kRowsPerCell = 6;  // minimum, so that a mean is more accurate than a reading
+constexpr std::size_t kLeastRowsOfPicture = 4;  // a picture of fewer rows shows less than their list
+constexpr double kFlat = 0.02;  // of the longest side: a shorter side is the set-up of one plane or line
 
 /// Nominal tool points of all rows in the measuring frame, mm.
 Eigen::Matrix3Xd tool_points(const model::Machine& machine, const model::Measurement& m) {
@@ -67,7 +70,7 @@ std::vector<FailureCell> failure_cells(const model::Machine& machine, const mode
   std::vector<Eigen::Index> used;
   for (std::size_t row = 0; row < m.rows(); ++row)
     if (vectors.seen[row] > 0) used.push_back(static_cast<Eigen::Index>(row));
-  if (used.size() < 4) return {};
+  if (used.size() < kLeastRowsOfPicture) return {};
   Eigen::Vector3d low = point.col(used.front()), high = low;
   for (const Eigen::Index row : used) {
     low = low.cwiseMin(point.col(row));
@@ -75,10 +78,10 @@ std::vector<FailureCell> failure_cells(const model::Machine& machine, const mode
   }
   const double longest = (high - low).maxCoeff();
   int sides = 0;
-  for (int k = 0; k < 3; ++k) sides += high[k] - low[k] > 0.02 * longest ? 1 : 0;
+  for (int k = 0; k < 3; ++k) sides += high[k] - low[k] > kFlat * longest ? 1 : 0;
   const int per_side = std::clamp(
       static_cast<int>(std::pow(static_cast<double>(used.size()) / kRowsPerCell, 1.0 / std::max(1, sides))),
-      1, sides == 1 ? 4 * kMostPerSide : kMostPerSide);
+      1, sides == 1 ? kMostOnLine : kMostPerSide);
   struct Sum {
     Eigen::Vector3d point = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
     double squares = 0;
@@ -88,7 +91,7 @@ std::vector<FailureCell> failure_cells(const model::Machine& machine, const mode
   for (const Eigen::Index row : used) {
     std::array<int, 3> cell{};
     for (Eigen::Index k = 0; k < 3; ++k)
-      if (high[k] - low[k] > 0.02 * longest)
+      if (high[k] - low[k] > kFlat * longest)
         cell[static_cast<std::size_t>(k)] = std::min(
             per_side - 1, static_cast<int>(per_side * (point(k, row) - low[k]) / (high[k] - low[k])));
     Sum& sum = sums[cell];

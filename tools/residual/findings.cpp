@@ -2,6 +2,7 @@
 #include "tools/residual/findings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -21,6 +22,22 @@ constexpr double kAlike = 0.97;
 constexpr double kTellable = 1e-3;
 /// Of the variance: a smaller share is not reported, however significant.
 constexpr double kWorthSaying = 0.002;
+/// Rows for each removed function, and for each tested lag: most of the information stays in the residual,
+/// and a correlation is a mean over at least three quarters of the rows.
+constexpr std::size_t kRowsPerFunction = 4;
+/// Longest lag of a serial correlation. The sum of Bartlett's formula ends before, at the first lag without
+/// a significant correlation; the limit bounds the time.
+constexpr std::size_t kMostLag = 200;
+/// The ends of a curve differ by this part of its whole height: the curve has no turning point that a user
+/// sees.
+constexpr double kMonotone = 0.9;
+/// The rows of a run decide about a curve if there are at least this many. Mean and slope use two of them.
+constexpr double kLeastRowsOfRun = 5;
+/// A run agrees with the curve over all runs if its own size is within this factor. Its uncertainty is at
+/// most 0.3 of the size, so that an agreeing run is beyond the factor by two standard deviations only.
+constexpr double kAgreement = 2.5;
+/// A smaller correlation of neighbours is not reported: it explains 2 % of the variance of the next row.
+constexpr double kLeastCorrelation = 0.15;
 
 /// Step of which all positions of a column are multiples, from the first position; nullopt if they are
 /// scattered.
@@ -120,9 +137,10 @@ class Search {
   maths::FunctionSet quick_functions() const {
     // Correlation of neighbouring rows below which a column changes from row to row.
     constexpr double kQuick = 0.3;
+    constexpr std::array kOrders{1, 2, 4};  // the coarse functions first; of curves, see recorded.cpp
     maths::FunctionSet set;
-    const std::size_t most = sample_.rows.size() / 4;
-    for (const int order : {1, 2, 4})
+    const std::size_t most = sample_.rows.size() / kRowsPerFunction;
+    for (const int order : kOrders)
       for (const BasisTerm& term : sample_.basis->terms) {
         if (term.shape == Shape::kConstant || term.shape == Shape::kProduct || term.order != order) continue;
         if (set.size() + term.subject.size() > most) continue;
@@ -144,7 +162,7 @@ class Search {
     const Eigen::VectorXd rest = left(set);
     if (!(rest.squaredNorm() > 0)) return 1;
     const auto n = static_cast<double>(rest.size());
-    const std::size_t most_lag = std::min<std::size_t>(200, sample_.rows.size() / 4);
+    const std::size_t most_lag = std::min(kMostLag, sample_.rows.size() / kRowsPerFunction);
     double factor = 1;
     for (std::size_t lag = 1; lag <= most_lag; ++lag) {
       const double correlation = at_lag(rest, lag);
@@ -511,7 +529,7 @@ class Describer {
     facts.highest_at = std::max_element(points.begin(), points.end(), by_height)->first;
     facts.lowest_at = std::min_element(points.begin(), points.end(), by_height)->first;
     const double reach = curve.maxCoeff() - curve.minCoeff();
-    facts.monotone = std::abs(facts.at_high_um - facts.at_low_um) > 0.9 * reach;
+    facts.monotone = std::abs(facts.at_high_um - facts.at_low_um) > kMonotone * reach;
     const ColumnKind kind = context_.columns[term.column].kind;
     facts.time = kind == ColumnKind::kTime || kind == ColumnKind::kVisit;
     if (kind != ColumnKind::kRun) return;
@@ -550,14 +568,14 @@ class Describer {
     const double variance = rest_.squaredNorm() / std::max(1.0, sample_.moments.freedom);
     for (std::size_t run = 0; run < sums.size(); ++run) {
       const RunSums& s = sums[run];
-      if (s.n < 5) continue;
+      if (s.n < kLeastRowsOfRun) continue;
       const double cc = s.cc - s.c * s.c / s.w, cy = s.cy - s.c * s.y / s.w;
       const double spread = std::sqrt(std::max(variance, s.rr / s.n) / std::max(cc, 1e-300));
       constexpr double kShown = 0.3;  // of the whole effect: below, the run's rows cannot show it
       if (cc <= 0 || spread > kShown) continue;
       ++f.runs;
       const double slope = cy / cc;
-      if (slope > 0.4 && slope < 2.5 && slope > 2 * spread)
+      if (slope > 1 / kAgreement && slope < kAgreement && slope > 2 * spread)
         ++f.runs_agreeing;
       else
         facts.disagreeing.push_back(states.run_names[run]);
@@ -605,7 +623,7 @@ void add_wandering(const KindSample& sample, const FindingContext& context, cons
     if (test.log_p < best.log_p) best = test;
   }
   const double p = std::exp(std::min(0.0, best.log_p + std::log(static_cast<double>(context.tried))));
-  if (p >= context.least_p || best.correlation < 0.15) return;
+  if (p >= context.least_p || best.correlation < kLeastCorrelation) return;
   Finding f;
   f.observation = sample.name();
   f.column = format::columns::kVisit;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -20,6 +21,18 @@ struct Sort {
 
   void add(double value, const std::string& by) { log_p.emplace_back(value, by); }
 };
+
+/// Sorts of tests, in the order of kParts.
+enum SortIndex : std::size_t { kMeans, kColumns, kProducts, kJoint, kPeriods, kNeighbours, kRepeats, kSorts };
+/// Part of the probability of a false alarm that each sort receives (Bonferroni with weights; their sum is
+/// 1). The weights are chosen: errors of one column first, then products of two. They decide only the power:
+/// with any weights the probability of a false alarm is at most the level.
+constexpr std::array<double, kSorts> kParts = {0.03, 0.40, 0.20, 0.15, 0.10, 0.08, 0.04};
+
+/// Joint tests: polynomials of every column up to these orders. kOfPairs: second order of every column and
+/// the products of pairs. The last has every function of a column (kMostDegree in recorded.cpp).
+constexpr int kOfPairs = 3;
+constexpr std::array kJointOrders = {1, 2, kOfPairs, 8};
 
 class Tester {
  public:
@@ -74,7 +87,7 @@ class Tester {
   /// Tests all columns together, if there are enough rows for the coefficients.
   void joint(Sort& sort) const {
     for (const bool axes_only : {true, false})
-      for (const int order : {1, 2, 3, 8}) {
+      for (const int order : kJointOrders) {
         std::vector<const maths::Moments*> all;
         std::vector<maths::Explained> parts;
         for (std::size_t k = 0; k < samples_.size(); ++k) {
@@ -137,7 +150,6 @@ class Tester {
     return name;
   }
 
-  /// order 3: second order of every column and the products of pairs.
   maths::FunctionSet joint_set(const KindSample& sample, bool axes_only, int order) const {
     const auto wanted = [&](std::size_t column) {
       const ColumnKind kind = columns_[column].kind;
@@ -148,7 +160,8 @@ class Tester {
     for (const BasisTerm& term : sample.basis->terms) {
       if (term.shape == Shape::kConstant || !wanted(term.column)) continue;
       const bool product = term.shape == Shape::kProduct;
-      if (product ? order != 3 || !wanted(*term.second) : term.order > (order == 3 ? 2 : order)) continue;
+      if (product ? order != kOfPairs || !wanted(*term.second) : term.order > (order == kOfPairs ? 2 : order))
+        continue;
       set.insert(set.end(), term.subject.begin(), term.subject.end());
     }
     std::sort(set.begin(), set.end());
@@ -168,15 +181,15 @@ class Tester {
 Omnibus omnibus_test(const std::vector<KindSample>& samples, const std::vector<RecordedColumn>& columns,
                      const model::Measurement& m, const Repeats& repeats) {
   const Tester tester(samples, columns);
-  std::array<Sort, 7> sorts;
-  sorts[0].part = 0.03, tester.constants(sorts[0]);
-  sorts[1].part = 0.40, tester.terms(sorts[1], false);
-  sorts[2].part = 0.20, tester.terms(sorts[2], true);
-  sorts[3].part = 0.15, tester.joint(sorts[3]);
-  sorts[4].part = 0.10, tester.periods(sorts[4]);
-  sorts[5].part = 0.08, tester.neighbours(sorts[5], m);
-  sorts[6].part = 0.04;
-  if (repeats.log_p) sorts[6].add(*repeats.log_p, "lack of fit against repeats");
+  std::array<Sort, kSorts> sorts;
+  for (std::size_t i = 0; i < kSorts; ++i) sorts[i].part = kParts[i];
+  tester.constants(sorts[kMeans]);
+  tester.terms(sorts[kColumns], false);
+  tester.terms(sorts[kProducts], true);
+  tester.joint(sorts[kJoint]);
+  tester.periods(sorts[kPeriods]);
+  tester.neighbours(sorts[kNeighbours], m);
+  if (repeats.log_p) sorts[kRepeats].add(*repeats.log_p, "lack of fit against repeats");
   double whole = 0;
   for (const Sort& sort : sorts) whole += sort.log_p.empty() ? 0 : sort.part;
   Omnibus result;

@@ -21,6 +21,16 @@ constexpr int kMostDegree = 8;
 constexpr std::size_t kMostRuns = 40;           // more runs are tested only through `visit` and `t`
 constexpr std::size_t kMostRunsOfProducts = 8;  // more runs would need more products than there are readings
 constexpr double kHalfTurn = 180;               // deg: an axis with this travel has harmonics
+constexpr std::size_t kRowsPerRun = 4;          // minimum: the mean of a run is better than a reading
+/// A curve is also tested with this degree, between the parabola and kMostDegree: a test with fewer
+/// coefficients finds a smaller curve with two or three bends.
+constexpr int kMiddleDegree = 4;
+/// More values of a column need no exact count: every polynomial that is tested has fewer coefficients.
+constexpr std::size_t kMostLevels = 64;
+/// Half of the values are in an eighth of the range: a polynomial over the values would describe the others.
+constexpr double kCrowded = 0.75;
+/// Functions have the length 1: a product with a smaller square is zero except for rounding.
+constexpr double kZeroSquare = 1e-24;
 
 class Recorder {
  public:
@@ -82,7 +92,7 @@ Eigen::VectorXd scaled(const RecordedColumn& column, const std::vector<std::size
   std::sort(known.begin(), known.end());
   const double low = known.front(), high = known.back();
   const auto to_unit = [&](double v) { return high > low ? 2 * (v - low) / (high - low) - 1 : 0.0; };
-  const bool crowded = std::abs(to_unit(known[known.size() / 2])) > 0.75;
+  const bool crowded = std::abs(to_unit(known[known.size() / 2])) > kCrowded;
   Eigen::VectorXd u = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows.size()));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double v = column.value[static_cast<Eigen::Index>(rows[i])];
@@ -104,7 +114,7 @@ std::size_t level_count(const RecordedColumn& column, const std::vector<std::siz
   for (const std::size_t row : rows) {
     const double v = column.value[static_cast<Eigen::Index>(row)];
     if (!std::isnan(v)) levels.insert(v);
-    if (levels.size() > 64) break;
+    if (levels.size() > kMostLevels) break;
   }
   return levels.size();
 }
@@ -137,7 +147,7 @@ class Builder {
       for (const Eigen::Index k : simple_[b]) {
         const Eigen::VectorXd product = centred(functions_[static_cast<std::size_t>(i)])
                                             .cwiseProduct(centred(functions_[static_cast<std::size_t>(k)]));
-        if (product.squaredNorm() > 1e-24) term.subject.push_back(add(product));
+        if (product.squaredNorm() > kZeroSquare) term.subject.push_back(add(product));
       }
     if (!term.subject.empty()) terms_.push_back(term);
   }
@@ -164,7 +174,8 @@ class Builder {
 
   /// line: the values themselves; u: argument of the curves.
   void add_curves(std::size_t at, const Eigen::VectorXd& line, const Eigen::VectorXd& u) {
-    const auto levels = static_cast<int>(std::min<std::size_t>(level_count(columns_[at], rows_), 64));
+    const auto levels =
+        static_cast<int>(std::min<std::size_t>(level_count(columns_[at], rows_), kMostLevels));
     const int degree = std::min(kMostDegree, levels - 1);
     std::vector<Eigen::Index> sofar{add(line)};
     terms_.push_back({Shape::kLinear, at, {}, 1, sofar, {}});
@@ -178,7 +189,8 @@ class Builder {
       now = next;
       sofar.push_back(add(now));
       if (n == 2) main_[at].push_back(sofar.back());
-      if (n == 2 || n == 4 || n == degree) terms_.push_back({Shape::kCurve, at, {}, n, sofar, {}});
+      if (n == 2 || n == kMiddleDegree || n == degree)
+        terms_.push_back({Shape::kCurve, at, {}, n, sofar, {}});
     }
   }
 
@@ -230,7 +242,7 @@ class Builder {
   void add_runs(std::size_t at) {
     std::set<double> labels;
     for (const std::size_t row : rows_) labels.insert(columns_[at].value[static_cast<Eigen::Index>(row)]);
-    if (labels.size() < 2 || labels.size() > std::min(kMostRuns, rows_.size() / 4)) return;
+    if (labels.size() < 2 || labels.size() > std::min(kMostRuns, rows_.size() / kRowsPerRun)) return;
     BasisTerm term{Shape::kJumps, at, {}, 1, {}, {}};
     for (auto label = std::next(labels.begin()); label != labels.end(); ++label) {
       Eigen::VectorXd f(static_cast<Eigen::Index>(rows_.size()));

@@ -134,7 +134,9 @@ std::optional<double> neighbour_error_um(const std::vector<KindSample>& samples,
       count += 1;
     }
   }
-  if (count < 10) return std::nullopt;
+  // The standard deviation from ten pairs has an uncertainty of 1 / sqrt(2 * 10), 22 %.
+  constexpr double kLeastPairs = 10;
+  if (count < kLeastPairs) return std::nullopt;
   return maths::kUmPerMm * std::sqrt(squares / count);
 }
 

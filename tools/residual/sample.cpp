@@ -119,7 +119,8 @@ struct SineSums {
   double explained(Eigen::Vector2d* factor) const {
     const double a = ss - s1 * s1 / n1, b = cs - s1 * c1 / n1, c = cc - c1 * c1 / n1;
     const double p = sr - s1 * r1 / n1, q = cr - c1 * r1 / n1, det = a * c - b * b;
-    if (det <= 1e-6 * ss * cc) return 0;
+    constexpr double kDependent = 1e-6;  // of sine and cosine: the positions do not separate them
+    if (det <= kDependent * ss * cc) return 0;
     const Eigen::Vector2d f((c * p - b * q) / det, (a * q - b * p) / det);
     if (factor != nullptr) *factor = f;
     return f[0] * p + f[1] * q;
@@ -229,18 +230,20 @@ std::pair<double, double> range_of(const KindSample& sample, const RecordedColum
 std::optional<Period> strongest_period(const KindSample& sample, const RecordedColumn& column,
                                        const Eigen::VectorXd& residual) {
   constexpr double kMostCycles = 100;  // over the range: shorter periods need more positions than are read
+  constexpr std::size_t kLeastValues = 12;  // positions: a cycle over the range then has its form
+  constexpr double kRowsPerCycle = 6;       // a sine and a mean use three of them
   const std::size_t values = value_count(sample, column), n = sample.rows.size();
-  if (values < 12) return std::nullopt;
+  if (values < kLeastValues) return std::nullopt;
   const auto [low, high] = range_of(sample, column);
   // Regular positions have aliases beyond half their number. Scattered positions allow as many
   // periods as there are rows.
   const double most =
-      std::min({kMostCycles, static_cast<double>(values - 1) / 2, static_cast<double>(n) / 6});
+      std::min({kMostCycles, static_cast<double>(values - 1) / 2, static_cast<double>(n) / kRowsPerCycle});
   const auto steps = static_cast<std::size_t>(kOversampling * most);
   std::vector<SineSums> sums(steps + 1);
   for (std::size_t i = 0; i < n; ++i) {
     const double x = (column.value[static_cast<Eigen::Index>(sample.rows[i])] - low) / (high - low);
-    const double angle = 2 * 3.14159265358979323846 * x / kOversampling, turn_c = std::cos(angle),
+    const double angle = 2 * std::numbers::pi * x / kOversampling, turn_c = std::cos(angle),
                  turn_s = std::sin(angle);
     double c = 1, s = 0;
     for (SineSums& sum : sums) {
@@ -289,7 +292,8 @@ PairTest correlate(const Eigen::VectorXd& residual,
                    const std::vector<std::pair<std::size_t, std::size_t>>& pairs) {
   PairTest test;
   test.pairs = static_cast<double>(pairs.size());
-  if (pairs.size() < 5) return test;
+  constexpr std::size_t kLeastPairs = 5;  // Fisher's transform divides by the root of pairs - 3
+  if (pairs.size() < kLeastPairs) return test;
   double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
   for (const auto& [i, k] : pairs) {
     const double p = residual[static_cast<Eigen::Index>(i)], q = residual[static_cast<Eigen::Index>(k)];

@@ -16,7 +16,8 @@ bool closes(const Eigen::MatrixXd& points) {
   const Eigen::RowVectorXd step = points.row(last) - points.row(last - 1),
                            first_step = points.row(1) - points.row(0);
   const Eigen::RowVectorXd next = points.row(last) + step;
-  return step.norm() > 0 && (next - points.row(0)).norm() <= 1.5 * step.norm() && step.dot(first_step) > 0;
+  constexpr double kGap = 1.5;  // steps between the end of a closed path and its beginning: one, and a margin
+  return step.norm() > 0 && (next - points.row(0)).norm() <= kGap * step.norm() && step.dot(first_step) > 0;
 }
 
 Closure compare_ends(const Eigen::MatrixXd& series, Index rows) {
@@ -43,8 +44,8 @@ double best_elsewhere(const Eigen::MatrixXd& series, Index rows) {
 std::optional<Closure> examine_closure(const Eigen::MatrixXd& points, const Eigen::MatrixXd& series) {
   // Minimum number of readings of a clock, and of a run, for a test of repeats.
   constexpr Index kFewest = 12, kShortestRun = 200;
-  // A seventh of the turn: beyond it the path does not close.
-  const Index most = series.rows() / 7;
+  constexpr Index kPart = 7;  // a seventh of the turn: beyond it the path does not close
+  const Index most = series.rows() / kPart;
   if (series.rows() < kShortestRun || points.cols() == 0 || !series.allFinite() || !closes(points))
     return std::nullopt;
   Closure best;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -33,7 +34,8 @@ struct LagScan {
 
 LagScan scan_lags(const Eigen::MatrixXd& series, Index first, const Block& a, double implied, double search) {
   LagScan scan;
-  const double width = std::max(12.0, search * std::abs(implied));
+  constexpr double kLeastWidth = 12;  // rows: six times the tolerance of a lag
+  const double width = std::max(kLeastWidth, search * std::abs(implied));
   scan.lowest = std::max<Index>(a.rows() / 2, static_cast<Index>(std::floor(implied - width)));
   for (Index lag = scan.lowest; static_cast<double>(lag) <= implied + width; ++lag) {
     const auto b = stretch(series, first + lag, a.rows());
@@ -66,7 +68,8 @@ std::optional<RepeatBlock> compare_block(const Eigen::MatrixXd& series, Index fi
   const auto a = stretch(series, first, rows);
   if (!a) return std::nullopt;
   const LagScan scan = scan_lags(series, first, *a, implied, options.search);
-  const auto best = best_of(scan, -1e300, 1e300);
+  const auto best =
+      best_of(scan, -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
   const auto near = best_of(scan, implied - options.tolerance, implied + options.tolerance);
   if (!best || !near) return std::nullopt;
   const Block there = *stretch(series, first + *best, rows), expected = *stretch(series, first + *near, rows);
@@ -94,7 +97,10 @@ std::optional<RepeatBlock> compare_block(const Eigen::MatrixXd& series, Index fi
 
 Index rows_of_block(double implied, const RepeatOptions& options) {
   if (options.block > 0) return static_cast<Index>(options.block);
-  return static_cast<Index>(std::clamp(implied / 16, 60.0, 400.0));
+  // A pass has sixteen blocks, so that the place of a jump is visible. A block has rows enough for a
+  // correlation (60 independent rows: its uncertainty is 0.13), and not more than are needed for it.
+  constexpr double kBlocks = 16, kFewest = 60, kMost = 400;
+  return static_cast<Index>(std::clamp(implied / kBlocks, kFewest, kMost));
 }
 
 bool agree(const RepeatBlock& a, const RepeatBlock& b, const RepeatOptions& options) {
@@ -125,8 +131,10 @@ void place_jump(const Eigen::MatrixXd& series, const RepeatBlock& a, const Repea
   for (Index i = 0; i + skipped < rows; ++i) costs.push_back(cost += at_before[i] - at_after[i + skipped]);
   const auto least = std::min_element(costs.begin(), costs.end());
   jump.row = a.first + static_cast<std::size_t>(least - costs.begin());
-  // Twice the usual chi^2 step of 4 in units of the residual variance at the best row.
-  const double limit = *least * (1 + 8 / static_cast<double>(rows)) + 1e-12 * at_before.sum();
+  // Twice the usual chi^2 step of 4 in units of the residual variance at the best row. kRounding: of sums in
+  // double precision, if the repeats agree exactly.
+  constexpr double kStep = 8, kRounding = 1e-12;
+  const double limit = *least * (1 + kStep / static_cast<double>(rows)) + kRounding * at_before.sum();
   const auto within = [&](double value) { return value <= limit; };
   const auto from = std::find_if(costs.begin(), costs.end(), within);
   const auto to = std::find_if(costs.rbegin(), costs.rend(), within).base();
@@ -178,7 +186,8 @@ double joint_chance(const std::vector<RepeatBlock>& all, const RepeatLevel& leve
   double z = 0, tried = 1;
   for (const std::size_t i : level.blocks) {
     const double p = all[i].*chance;
-    z += p < 0.5 ? upper_quantile(std::max(p, 1e-300)) : 0;
+    constexpr double kSmallest = 1e-300;  // whose logarithm is finite
+    z += p < 0.5 ? upper_quantile(std::max(p, kSmallest)) : 0;
     tried = std::max(tried, all[i].tried);
   }
   const auto n = static_cast<double>(level.blocks.size()), count = static_cast<double>(all.size());
@@ -193,7 +202,8 @@ void finish(const std::vector<RepeatBlock>& all, RepeatLevel& level) {
     level.shift += (all[i].lag - all[i].implied_lag) / n;
   }
   for (const std::size_t i : level.blocks) squares += std::pow(all[i].lag - level.lag, 2);
-  level.uncertainty = n > 1 ? std::max(std::sqrt(squares / (n - 1) / n), 0.1) : 1;
+  constexpr double kLeast = 0.1;  // rows: the vertex of a parabola through three lags is not better
+  level.uncertainty = n > 1 ? std::max(std::sqrt(squares / (n - 1) / n), kLeast) : 1;
   level.p_agreement = joint_chance(all, level, &RepeatBlock::p_agreement);
   level.p_value = joint_chance(all, level, &RepeatBlock::p_at_lag);
 }

@@ -40,6 +40,10 @@ class Neighbours {
   std::vector<Index> order_;
 };
 
+// Radius of the search for the nearest row, of the usual step. Half a step finds the nearest row of a path
+// with the same spacing. The rest is a margin for uneven steps.
+constexpr double kRadius = 0.8;
+
 // Direction of the path at each row.
 Eigen::RowVectorXd heading(const Eigen::MatrixXd& points, Index row) {
   const Index before = std::max<Index>(row - 1, 0), after = std::min<Index>(row + 1, points.rows() - 1);
@@ -116,9 +120,7 @@ Eigen::MatrixXd path_points(const model::Measurement& m, const std::vector<std::
 Eigen::VectorXd revisit_lags(const Eigen::MatrixXd& points) {
   Eigen::VectorXd lags = Eigen::VectorXd::Constant(points.rows(), std::nan(""));
   if (!is_path(points)) return lags;
-  // Half a step finds the nearest row of a path with the same spacing. The rest is a margin for
-  // uneven steps.
-  const double radius = 0.8 * usual_step(points);
+  const double radius = kRadius * usual_step(points);
   const Neighbours neighbours(points);
   for (Index i = 0; i < points.rows(); ++i)
     lags[i] = return_to(points, neighbours.within(points.row(i), radius), i);
@@ -127,7 +129,7 @@ Eigen::VectorXd revisit_lags(const Eigen::MatrixXd& points) {
 
 std::optional<PathMap> map_paths(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second) {
   if (first.cols() != second.cols() || !is_path(first) || !is_path(second)) return std::nullopt;
-  const double radius = 0.8 * std::max(usual_step(first), usual_step(second));
+  const double radius = kRadius * std::max(usual_step(first), usual_step(second));
   const Neighbours neighbours(second);
   std::vector<double> place(static_cast<std::size_t>(first.rows()), std::nan(""));
   for (Index i = 0; i < first.rows(); ++i) {
@@ -146,6 +148,11 @@ std::optional<PathMap> map_paths(const Eigen::MatrixXd& first, const Eigen::Matr
   PathMap map;
   // The median slope is coarse; the line between the ends of its inliers makes it exact.
   map.rate = maths::median(slopes);
+  // Rows from the line that still belong to it: at first 2 % of the path, by which the median slope may miss
+  // its end; then the two rows to which a neighbour is known.
+  constexpr double kCoarse = 0.02, kFine = 2;
+  // Of the rows of the first path: fewer on the line are not the same path.
+  constexpr double kLeastShare = 0.7;
   for (int round = 0; round < 2; ++round) {
     offsets.clear();
     for (std::size_t i = 0; i < place.size(); ++i) {
@@ -153,7 +160,7 @@ std::optional<PathMap> map_paths(const Eigen::MatrixXd& first, const Eigen::Matr
     }
     map.offset = maths::median(offsets);
     double n = 0, si = 0, sp = 0, sii = 0, sip = 0;
-    const double allowed = round == 0 ? 0.02 * static_cast<double>(place.size()) + 2 : 2;
+    const double allowed = round == 0 ? kCoarse * static_cast<double>(place.size()) + kFine : kFine;
     for (std::size_t i = 0; i < place.size(); ++i) {
       const auto x = static_cast<double>(i);
       if (!(std::abs(place[i] - map.offset - map.rate * x) <= allowed)) continue;
@@ -165,7 +172,7 @@ std::optional<PathMap> map_paths(const Eigen::MatrixXd& first, const Eigen::Matr
     map.offset = (sp - map.rate * si) / n;
     map.share = n / static_cast<double>(place.size());
   }
-  if (map.share < 0.7 || map.rate == 0) return std::nullopt;
+  if (map.share < kLeastShare || map.rate == 0) return std::nullopt;
   return map;
 }
 

@@ -115,7 +115,10 @@ class Surrogates {
   Eigen::MatrixXd cosine_, sine_, a_, b_;
 };
 
-double fisher(double r) { return std::atanh(std::clamp(r, -1 + 1e-9, 1 - 1e-9)); }
+double fisher(double r) {
+  constexpr double kMost = 1 - 1e-9;  // below a correlation of 1, whose transform is infinite
+  return std::atanh(std::clamp(r, -kMost, kMost));
+}
 
 // Probability of the observed maximum among surrogates: by counting, and by the tail of their
 // Gumbel law if counting cannot resolve it. The larger of both is used if counting gives a result.
@@ -130,13 +133,17 @@ double chance(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second, const
         fisher(search(first, surrogates.draw(random), implied, observed.rate, options).correlation);
     sum += z, squares += z * z;
     if (z >= fisher(observed.correlation)) ++above;
-    // Twenty larger maxima, in however few surrogates, are sufficient to reject the finding.
-    if (above == 20) return static_cast<double>(above) / (k + 1);
+    // Larger maxima, in however few surrogates, that are sufficient to reject the finding: the share of
+    // twenty has an uncertainty of 1 / sqrt(20), 22 %.
+    constexpr int kEnough = 20;
+    if (above == kEnough) return static_cast<double>(above) / (k + 1);
   }
+  // Mean and standard deviation of Gumbel's law: location + gamma * scale, pi / sqrt(6) * scale.
+  constexpr double kLeastVariance = 1e-12;  // if all surrogates are equal
   const double n = options.surrogates, mean = sum / n;
-  const double deviation = std::sqrt(std::max(squares / n - mean * mean, 1e-12));
+  const double deviation = std::sqrt(std::max(squares / n - mean * mean, kLeastVariance));
   const double scale = deviation * std::sqrt(6.0) / std::numbers::pi;
-  const double location = mean - 0.5772156649 * scale;
+  const double location = mean - std::numbers::egamma * scale;
   const double tail = -std::expm1(-std::exp(-(fisher(observed.correlation) - location) / scale));
   return above > 0 ? std::max(tail, (above + 1) / (n + 1)) : tail;
 }

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "tools/format/readings.h"
+#include "tools/maths/factors.h"
 #include "tools/timebase/revisit.h"
 
 namespace vernier::timebase {
@@ -51,7 +52,8 @@ std::vector<RecordSeries> series_of(const model::Measurement& m, const Eigen::Ve
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
     const model::Observation& o = m.observations[i];
     if (!model::is_rotation(o.kind) && (with_check || !m.check[o.row]))
-      table(static_cast<Index>(o.row), static_cast<Index>(o.kind)) = 1000 * residual[static_cast<Index>(i)];
+      table(static_cast<Index>(o.row), static_cast<Index>(o.kind)) =
+          maths::kUmPerMm * residual[static_cast<Index>(i)];
   }
   for (RecordSeries& run : runs) {
     Eigen::MatrixXd mine(static_cast<Index>(run.rows.size()), table.cols());
@@ -164,7 +166,8 @@ double looks(std::size_t count) { return static_cast<double>(std::max<std::size_
 
 // Fisher's combined probability of two independent ones.
 double joint(double p, double q) {
-  const double product = std::max(p * q, 1e-300);
+  constexpr double kSmallest = 1e-300;  // whose logarithm is finite
+  const double product = std::max(p * q, kSmallest);
   return product * (1 - std::log(product));
 }
 

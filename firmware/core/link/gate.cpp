@@ -38,7 +38,11 @@ bool Gate::is_challenge(const std::uint8_t* request, std::uint32_t size) noexcep
 ChallengeBytes Gate::fresh() noexcept {
   std::uint8_t counted[8], digest[Sha512::kBytes];
   ++counter_;
-  for (int i = 0; i < 8; ++i) counted[i] = static_cast<std::uint8_t>(counter_ >> (8 * i));
+  std::uint64_t rest = counter_;
+  for (std::uint8_t& byte : counted) {
+    byte = static_cast<std::uint8_t>(rest);
+    rest >>= 8;
+  }
   Sha512 hash;
   hash.add(seed_.data(), static_cast<std::uint32_t>(seed_.size()));
   hash.add(nonce_.data(), static_cast<std::uint32_t>(nonce_.size()));

@@ -54,6 +54,15 @@ INSTANTIATE_TEST_SUITE_P(Machines, Certificate,
                                          "xy_ball_bar"),
                          [](const auto& test) { return test.param; });
 
+TEST(OneCertificate, OfARobotSaysWhatProvesItsBound) {
+  const auto certificate = [](const char* name) {
+    const TestMachine test(disturbed(model::read_machine(diagnose_test::machine_path(name)), 41));
+    return print_certificate(test.machine, test.compiled);
+  };
+  EXPECT_NE(certificate("ur10e").find("This file does not prove it."), std::string::npos);
+  EXPECT_EQ(certificate("xy_ball_bar").find("This file does not prove it."), std::string::npos);
+}
+
 TEST(OneCertificate, OfAMachineWithoutErrorsIsProvedToo) {
   if (!has_gappa()) GTEST_SKIP() << "no gappa on this machine";
   const TestMachine test(model::read_machine(diagnose_test::machine_path("gantry")));

@@ -210,12 +210,31 @@ std::unique_ptr<LoadedImage> image_with_two_inputs() {
 /// Inputs of which one can be silent.
 struct TwoInputs : InputReader {
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override {
+    ++reads[input];
     if (silent[input]) return HalFault::kNoReading;
     value = InputMicro(21'000'000);
     return HalFault::kNone;
   }
   bool silent[2] = {};
+  int reads[kMaxInputs + 1] = {};
 };
+
+// A second reading would be of another instant, and a reading beyond the board's inputs of no device.
+TEST(Cycle, EachInputIsReadOnceATickAndNoneBeyondThem) {
+  const auto image = image_with_two_inputs();
+  Roaming motion({{0, 600'000'000}, {0, 200'000'000}}, {}, TimeUs(1000), 0.1, 1);
+  SimPlant plant(motion, 2, 0, {});
+  SimClock clock;
+  TwoInputs inputs;
+  Cycle cycle(image->view, Board{clock, plant, inputs, plant}, CycleLimits{});
+  for (int tick = 1; tick <= 100; ++tick) {
+    plant.advance();
+    cycle.tick(TimeUs(1000 * tick), Command::kNone);
+  }
+  EXPECT_EQ(inputs.reads[0], 100);
+  EXPECT_EQ(inputs.reads[1], 100);
+  EXPECT_EQ(inputs.reads[2], 0);
+}
 
 TEST(Cycle, EachInputOfTheProgramIsReadAndItsSilenceIsAFault) {
   const auto image = image_with_two_inputs();
@@ -240,6 +259,22 @@ TEST(Cycle, EachInputOfTheProgramIsReadAndItsSilenceIsAFault) {
     run(200);
     EXPECT_EQ(cycle.latched(), Fault::kInputMissing) << "input " << silent;
   }
+}
+
+TEST(Cycle, TicksCountAsActiveOnlyWhileTheyAre) {
+  Rig rig;
+  ASSERT_TRUE(rig.run_to(Mode::kReady));
+  for (int i = 0; i < 50; ++i) rig.tick();
+  EXPECT_EQ(rig.cycle().health().active_ticks, 0u);
+  std::uint64_t active = 0;
+  const std::uint64_t before = rig.cycle().health().ticks;
+  for (int i = 0; i < 1000; ++i) {
+    const TickReport report = rig.tick(i == 0 ? Command::kActivate : Command::kNone);
+    active += report.mode == Mode::kActive ? 1 : 0;
+  }
+  EXPECT_GT(active, 500u);
+  EXPECT_EQ(rig.cycle().health().active_ticks, active);
+  EXPECT_EQ(rig.cycle().health().ticks - before, 1000u);
 }
 
 TEST(Cycle, RefusedWriteIsRepeatedWithTheSameValue) {

@@ -610,6 +610,41 @@ TEST_F(LinkTest, BeforeTheFirstTickThereIsNoState) {
   }
 }
 
+TEST_F(LinkTest, TickHasEveryAxisAndEveryInputOfTheBoard) {
+  const Wiring wiring{{{"X"}, {"Y"}}, {"S", "T", "U"}};
+  Link link(const_cast<Exchange&>(rig_.service().exchange()), rig_.uploader(), wiring, TimeUs(1000),
+            identity_);
+  rig_.run(10);
+  const std::uint8_t request[] = {static_cast<std::uint8_t>(LinkOp::kTick), 1};
+  std::uint8_t reply[kMaxReplyBytes];
+  EXPECT_EQ(link.answer(request, sizeof(request), reply, TimeUs(1)),
+            kReplyHeaderBytes + sizeof(LinkTick) + 2 * sizeof(LinkAxis) + 3 * sizeof(LinkInput));
+}
+
+TEST_F(LinkTest, LiveRegistersOfARotaryAxisAreThousandthsOfADegree) {
+  const Wiring wiring{{{"X"}, {"C", true, false}}, {"T"}};
+  Exchange& exchange = const_cast<Exchange&>(rig_.service().exchange());
+  Link link(exchange, rig_.uploader(), wiring, TimeUs(1000), identity_);
+  rig_.run(10);
+  TickRecord tick;
+  ASSERT_TRUE(exchange.ticks.read(exchange.ticks.count() - 1, tick));
+  tick.position[1] = (std::int64_t{9} << 32) / 4;  // 2.25 turns
+  tick.correction[1] = -(1 << 30);                 // a quarter of a turn back
+  exchange.ticks.add(tick);
+  HealthRecord health;
+  ASSERT_TRUE(exchange.health.read(health));
+  std::uint16_t registers[kLiveRegisters];
+  link.fill_registers(registers);
+  const auto pair = [&](int at) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(registers[at]) << 16 | registers[at + 1]);
+  };
+  EXPECT_EQ(pair(kLiveAxes), tick.position[0] / 1000);
+  EXPECT_EQ(pair(kLiveAxes + kLiveRegistersPerAxis), 810'000);
+  EXPECT_EQ(pair(kLiveAxes + kLiveRegistersPerAxis + 2), -90'000'000);
+  EXPECT_EQ(pair(kLiveAxes + 2 * kLiveRegistersPerAxis), 0) << "no third axis";
+  EXPECT_EQ(registers[kLiveLatency], health.latency_ns[1] / 1000);
+}
+
 // The tick may be interrupted at any point. A link then shows no state, and never half of a state.
 TEST_F(LinkTest, HalfWrittenStateIsNotShown) {
   rig_.run(10);

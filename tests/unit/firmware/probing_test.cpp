@@ -162,6 +162,24 @@ TEST(Probing, TakesTheActualPositionAndTheCommandedOneOfAnAxisWithoutAReading) {
   EXPECT_EQ(by_encoder.position[2], by_command.position[2] + 5000);
 }
 
+TEST(Probing, PositionIsThatOfAnEarlierInstantByItsAge) {
+  const Profile profile{.feed_mm_s = 10};
+  constexpr double kAge = 2e-3, kEdge = 0.2;
+  ProbeSettings settings = published_probe();
+  settings.position_age = InstantNs(2'000'000);
+  TouchRig fresh(profile, published_probe(), kResolution), aged(profile, settings, kResolution);
+  for (TouchRig* const rig : {&fresh, &aged})
+    rig->run(profile, {{kEdge, true}, {kEdge + 0.02, false}}, kResolution);
+  ASSERT_EQ(fresh.touches().size(), 1u);
+  ASSERT_EQ(aged.touches().size(), 1u);
+  // The rig reads positions without a delay: one that counts as older is that of a later place.
+  const double contact = kEdge - kDelay;
+  const double moved_nm = (profile.at(contact + kAge) - profile.at(contact)) * 1e6;
+  EXPECT_GT(std::abs(moved_nm), 10'000);
+  EXPECT_NEAR(static_cast<double>(aged.touches()[0].position[0] - fresh.touches()[0].position[0]), moved_nm,
+              200);
+}
+
 TEST(Probing, TouchWaitsForAFrameThatIsBeingWritten) {
   const Profile profile{.feed_mm_s = 10};
   TouchRig rig(profile, published_probe(), kResolution);

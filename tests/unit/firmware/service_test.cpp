@@ -170,6 +170,16 @@ TEST_F(BesideStore, SettingThatTheStoreDoesNotTakeIsAnsweredAfterFiveSeconds) {
   EXPECT_EQ(reply_[0], 1) << "not stored";
 }
 
+// Also of a board that runs for long: they do not count from its start.
+TEST_F(BesideStore, FiveSecondsBeginWithTheFirstSetting) {
+  clock_.spend(InstantNs(60'000'000'000));
+  give(Command::kDeactivate);
+  EXPECT_EQ(later(), CommandHandler::kLater);
+  clock_.spend(InstantNs(5'001'000'000));
+  ASSERT_EQ(later(), 1u);
+  EXPECT_EQ(reply_[0], 1) << "not stored";
+}
+
 // A store that goes on, though slowly, is waited for.
 TEST_F(BesideStore, EachSettingThatIsStoredBeginsTheFiveSecondsAnew) {
   service_->look_after_store();

@@ -100,6 +100,24 @@ TEST(Sync, FloodOfSignsStartsNoMoreTicks) {
   }
 }
 
+/// A device whose signs never end, at one and the same instant.
+struct Endless : TickSync {
+  HalFault wait_for_sync(InstantNs) noexcept override { return ++signs, HalFault::kNone; }
+  int signs = 0;
+};
+
+TEST(Sync, TickOfEndlessEarlySignsIsStartedByTheClockAfter64) {
+  Rig rig;
+  SimClock clock;
+  Endless endless;
+  Runner runner{rig.cycle(), clock, TimeUs(1000), &endless, TimeUs(20'000)};
+  rig.plant().advance();
+  runner.step(Command::kNone);
+  EXPECT_EQ(endless.signs, 64);
+  EXPECT_EQ(runner.woke(), InstantNs(1'000'000));
+  EXPECT_FALSE(runner.in_step());
+}
+
 TEST(Sync, BrokenDeviceLeavesTheTicksToTheClock) {
   SyncBench bench;
   bench.signs.broken = true;

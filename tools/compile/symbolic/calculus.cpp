@@ -57,13 +57,62 @@ double combined(NodeKind kind, double a, double b) {
   }
 }
 
-void collect_positions(const Graph& g, NodeId node, std::set<NodeId>& seen, std::set<NodeId>& positions) {
-  if (!seen.insert(node).second) return;
-  const Node& n = g[node];
-  if (n.kind == NodeKind::kChannel && n.channel == ChannelKind::kPosition) positions.insert(node);
-  for (const NodeId arg : n.args) collect_positions(g, arg, seen, positions);
-  for (const Term& term : n.terms) collect_positions(g, term.node, seen, positions);
-}
+/// Interval arithmetic over parts (boxes) of the declared ranges, for one node. A position has the range of
+/// the box, any other channel its whole range.
+class Enclosure {
+ public:
+  Enclosure(const Graph& graph, NodeId root, const TableRange& table_range)
+      : graph_(graph), root_(root), table_range_(table_range), range_(root + 1) {
+    std::set<NodeId> needed;
+    collect(root, needed);
+    needed_.assign(needed.begin(), needed.end());
+    for (const NodeId id : needed_) {
+      const Node& n = graph_[id];
+      if (n.kind == NodeKind::kChannel && n.channel == ChannelKind::kPosition) positions_.push_back(id);
+    }
+  }
+
+  const std::vector<NodeId>& positions() const { return positions_; }
+  /// box: the range of each of positions().
+  Interval over(const std::vector<Interval>& box) {
+    std::size_t position = 0;
+    for (const NodeId id : needed_) {
+      const Node& n = graph_[id];
+      const bool at = position < positions_.size() && positions_[position] == id;
+      const Interval range = at ? box[position++] : of(n);
+      // Both are valid: the whole range's own and the part's.
+      range_[id] = {std::max(range.low, n.range.low), std::min(range.high, n.range.high)};
+    }
+    return range_[root_];
+  }
+
+ private:
+  // The nodes that an operation uses have smaller numbers.
+  void collect(NodeId id, std::set<NodeId>& needed) const {
+    if (!needed.insert(id).second) return;
+    for (const NodeId arg : graph_[id].args) collect(arg, needed);
+    for (const Term& term : graph_[id].terms) collect(term.node, needed);
+  }
+  Interval of(const Node& n) const {
+    if (n.kind == NodeKind::kSum) {
+      Interval range{n.number, n.number};
+      for (const Term& term : n.terms) range = range + term.coefficient * range_[term.node];
+      return range;
+    }
+    if (n.kind == NodeKind::kProduct)
+      return n.args[0] == n.args[1] ? square(range_[n.args[0]]) : range_[n.args[0]] * range_[n.args[1]];
+    if (n.kind == NodeKind::kFunction) return range_of_function(n.function, range_[n.args[0]]);
+    if (n.kind == NodeKind::kTable && table_range_) return table_range_(n, range_[n.args[0]]);
+    if (n.args.size() == 2) return range_of_choice(n.kind, range_[n.args[0]], range_[n.args[1]]);
+    return n.range;
+  }
+
+  const Graph& graph_;
+  NodeId root_;
+  const TableRange& table_range_;
+  std::vector<NodeId> needed_, positions_;
+  std::vector<Interval> range_;
+};
 
 }  // namespace
 
@@ -144,35 +193,13 @@ std::optional<double> sampled_constant(Samples& samples, NodeId node) {
   return std::abs(middle - nearest) < 1e-11 ? nearest : middle;
 }
 
-Interval Enclosure::of(NodeId id) {
-  const auto found = known_.find(id);
-  if (found != known_.end()) return found->second;
-  const Node& n = graph_[id];
-  Interval range = n.range;
-  const auto part = box_.find(id);
-  if (part != box_.end()) range = part->second;
-  if (n.kind == NodeKind::kSum) {
-    range = {n.number, n.number};
-    for (const Term& term : n.terms) range = range + term.coefficient * of(term.node);
-  } else if (n.kind == NodeKind::kProduct) {
-    range = n.args[0] == n.args[1] ? square(of(n.args[0])) : of(n.args[0]) * of(n.args[1]);
-  } else if (n.kind == NodeKind::kFunction) {
-    range = range_of_function(n.function, of(n.args[0]));
-  } else if (n.args.size() == 2) {
-    range = range_of_choice(n.kind, of(n.args[0]), of(n.args[1]));
-  }
-  // Both are valid: the whole range's own and the part's.
-  range = {std::max(range.low, n.range.low), std::min(range.high, n.range.high)};
-  return known_[id] = range;
-}
-
-double lower_bound_of(const Graph& graph, NodeId node, std::size_t boxes) {
-  std::set<NodeId> seen, positions;
-  collect_positions(graph, node, seen, positions);
-  using Box = std::map<NodeId, Interval>;
+double lower_bound_of(const Graph& graph, NodeId node, std::size_t boxes, const TableRange& table_range) {
+  Enclosure enclosure(graph, node, table_range);
+  const std::vector<NodeId>& positions = enclosure.positions();
+  using Box = std::vector<Interval>;
   Box whole;
-  for (const NodeId p : positions) whole[p] = graph[p].range;
-  const auto low_of = [&](const Box& box) { return Enclosure(graph, box).of(node).low; };
+  for (const NodeId p : positions) whole.push_back(graph[p].range);
+  const auto low_of = [&](const Box& box) { return enclosure.over(box).low; };
   const auto later = [](const auto& a, const auto& b) { return a.first > b.first; };
   std::priority_queue<std::pair<double, Box>, std::vector<std::pair<double, Box>>, decltype(later)> queue(
       later);
@@ -180,14 +207,13 @@ double lower_bound_of(const Graph& graph, NodeId node, std::size_t boxes) {
   for (std::size_t used = 1; used < boxes && !whole.empty(); used += 2) {
     const Box box = queue.top().second;
     queue.pop();
-    NodeId widest = box.begin()->first;
-    const auto share = [&](NodeId p) {
-      const Interval& all = graph[p].range;
-      return (box.at(p).high - box.at(p).low) / std::max(1e-300, all.high - all.low);
+    const auto share = [&](std::size_t p) {
+      return (box[p].high - box[p].low) / std::max(1e-300, whole[p].high - whole[p].low);
     };
-    for (const auto& [p, part] : box)
+    std::size_t widest = 0;
+    for (std::size_t p = 1; p < box.size(); ++p)
       if (share(p) > share(widest)) widest = p;
-    const Interval part = box.at(widest);
+    const Interval part = box[widest];
     const double middle = 0.5 * (part.low + part.high);
     for (const Interval& half : {Interval{part.low, middle}, Interval{middle, part.high}}) {
       Box next = box;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <functional>
 #include <map>
 #include <utility>
 #include <vector>
@@ -45,23 +46,13 @@ class Samples {
 /// Returns the value of a node that is equal at every sample (for example sin^2 + cos^2); otherwise nullopt.
 std::optional<double> sampled_constant(Samples& samples, NodeId node);
 
-/// Interval arithmetic over a part (box) of the declared ranges. A channel in `box` has the range of the box.
-/// Any other channel has its whole range.
-class Enclosure {
- public:
-  Enclosure(const Graph& graph, const std::map<NodeId, Interval>& box) : graph_(graph), box_(box) {}
-  Interval of(NodeId id);
-
- private:
-  const Graph& graph_;
-  const std::map<NodeId, Interval>& box_;
-  std::map<NodeId, Interval> known_;
-};
+/// Returns the range of a node of the kind kTable for a range of its position.
+using TableRange = std::function<Interval(const Node& table, const Interval& position)>;
 
 /// Returns a lower bound of a node over the declared ranges, by bisection of the positions on which the node
 /// depends. The bisection evaluates at most `boxes` parts (boxes) of the ranges. The lower bound is never
-/// above the true minimum.
-double lower_bound_of(const Graph& graph, NodeId node, std::size_t boxes);
+/// above the true minimum. Without `table_range`, a table has its whole range in every box.
+double lower_bound_of(const Graph& graph, NodeId node, std::size_t boxes, const TableRange& table_range = {});
 
 /// Upper bounds of |d node / d channel| over the declared ranges. For a table, the slope of its steepest
 /// segment counts. For a choice (min, max), the steeper side counts. The bounds of the derivatives exclude

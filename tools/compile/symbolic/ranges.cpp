@@ -2,6 +2,7 @@
 #include "tools/compile/symbolic/ranges.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "tools/model/fit_record.h"
 
@@ -81,6 +82,21 @@ Interval channel_range(const model::Machine& machine, ChannelKind kind, std::siz
       return {0, kVisits};
   }
   return {};
+}
+
+Interval table_range(const model::Table& table, std::size_t column, const Interval& positions,
+                     const Interval& whole) {
+  if (table.interpolation != model::Interpolation::kLinear || table.periodic) return whole;
+  const auto beyond = [](double location, const model::Station& s) { return location < s.loc; };
+  const auto first = table.stations.begin(), last = std::prev(table.stations.end());
+  auto from = std::upper_bound(first, table.stations.end(), positions.low, beyond);
+  auto to = std::upper_bound(first, table.stations.end(), positions.high, beyond);
+  if (from != first) --from;
+  if (from > last) from = last;
+  if (to > last) to = last;
+  Interval range{from->value[column], from->value[column]};
+  for (; from <= to; ++from) range = hull(range, {from->value[column], from->value[column]});
+  return range;
 }
 
 }  // namespace vernier::compile

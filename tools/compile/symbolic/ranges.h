@@ -16,4 +16,9 @@ Interval axis_range(const model::Machine& machine, std::size_t axis);
 Interval input_range(const model::Machine& machine, std::size_t input);
 Interval channel_range(const model::Machine& machine, ChannelKind kind, std::size_t index);
 
+/// Returns a range of a column of a table at the positions of an interval: that of the stations of all
+/// segments in it. `whole`: range of the column, the result for a cubic or periodic table.
+Interval table_range(const model::Table& table, std::size_t column, const Interval& positions,
+                     const Interval& whole);
+
 }  // namespace vernier::compile
