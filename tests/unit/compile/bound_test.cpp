@@ -48,6 +48,8 @@ TEST_P(ReferenceMachine, CompilesWithAllErrorsAndKeepsItsBound) {
       GetParam().c_str(), kSeed, seen.poses, test.compiled.program.instructions.size(), seen.largest_um,
       seen.worst_um, bound);
   EXPECT_LE(seen.worst_share, 1.0);
+  // What the bound leaves out (the second order of a least-squares correction) is no larger than the rest.
+  EXPECT_LE(seen.whole_um, 2 * bound);
   EXPECT_GT(seen.largest_um, 5.0);
   EXPECT_GT(seen.poses, 4000u);
   // A bound far beyond what is ever seen is of no use. The second order is that of the steepest slopes of all
