@@ -106,7 +106,7 @@ std::int64_t largest_step(const std::vector<Plc::Block>& blocks) {
 constexpr std::int64_t kMostStep = 2 * (kStep * 5 / 10 + 1);
 
 /// No value is wrong, however busy the computer is. Returns whether nine tenths of the blocks were valid, and
-/// nine tenths of these the correction of a tick.
+/// nine tenths of these the correction of a tick shortly before.
 bool equal_and_in_time(Plc& plc, std::chrono::milliseconds most_late) {
   std::string error;
   const auto output = open(plc, error);
@@ -122,16 +122,17 @@ bool equal_and_in_time(Plc& plc, std::chrono::milliseconds most_late) {
   for (const Plc::Block& block : blocks) {
     if ((block.valid & 1) == 0) continue;
     ++valid;
-    // GIVEN a block WHEN it came THEN its value is the correction of a tick shortly before, to the digit
-    const auto same = [&](const auto& asked) {
-      const std::int64_t counts = (std::abs(asked.second) + 5) / 10 * (asked.second < 0 ? -1 : 1);
-      return asked.first <= block.when + kTick && asked.first >= block.when - most_late &&
-             counts == block.values[0];
+    // GIVEN a block WHEN it came THEN its value is the correction of an earlier tick, to the digit
+    const auto asked_since = [&](Clock::time_point begin) {
+      return std::any_of(ticks.asked().begin(), ticks.asked().end(), [&](const auto& asked) {
+        const std::int64_t counts = (std::abs(asked.second) + 5) / 10 * (asked.second < 0 ? -1 : 1);
+        return asked.first >= begin && asked.first <= block.when + kTick && counts == block.values[0];
+      });
     };
     // or, after an exchange that was late, a value on the way that the limit of two periods gives.
     const bool limited = std::abs(block.values[0] - before) >= kMostStep / 2;
-    EXPECT_TRUE(limited || std::any_of(ticks.asked().begin(), ticks.asked().end(), same)) << block.values[0];
-    equal += limited ? 0 : 1;
+    EXPECT_TRUE(limited || asked_since({})) << block.values[0];
+    equal += !limited && asked_since(block.when - most_late) ? 1 : 0;
     before = block.values[0];
     EXPECT_LE(std::abs(block.values[0] + block.values[2]), kStep / 10) << "the other axis, a tick apart";
     EXPECT_EQ(block.values[1], 0) << "a place without an axis";

@@ -143,12 +143,12 @@ void print_for_people(std::FILE* out, const compile::CompiledMachine& c, const m
                "correction is neither damped nor limited (program {:.2g}, 2nd order {:.2g})\n",
                c.tilt->deviation_deg, c.tilt->left_deg(), c.tilt->fixed_point_deg, c.tilt->second_order_deg);
   if (c.bounds.empty()) fmt::print(out, "  no axis has a correction\n");
-  if (std::any_of(c.bounds.begin(), c.bounds.end(), [](const compile::OutputBound& b) {
-        return !b.deviation_deg && !b.second_order_um;
-      }))
-    fmt::print(out,
-               "note: the bound does not contain the second order: the change of the error over the correction "
-               "itself. The whole error can be larger than the bound\n");
+  if (std::any_of(c.bounds.begin(), c.bounds.end(),
+                  [](const compile::OutputBound& b) { return !b.deviation_deg && !b.second_order_um; }))
+    fmt::print(
+        out,
+        "note: the bound does not contain the second order: the change of the error over the correction "
+        "itself. The whole error can be larger than the bound\n");
   for (const std::string& step : c.switching)
     fmt::print(out, "note: the bound does not hold at the discontinuity of {}\n", step);
   for (const std::string& note : c.notes) fmt::print(out, "note: {}\n", note);
