@@ -185,6 +185,34 @@ void Finder::select_again() {
   criterion_ = selection.criterion;
   chi_square_ = selection.chi_square;
   simplify();
+  name_usual_pairs();
+}
+
+void Finder::name_usual_pairs() {
+  for (const std::size_t item : std::vector<std::size_t>(chosen_)) {
+    const effects::Choice& choice = pool_.candidate(item).choice;
+    if (!choice.axis || !is_of_axis_alone(item, *choice.axis)) continue;
+    const auto drivers = drivers_of(evidence_.machine(), pool_.candidate(item));
+    if (!std::any_of(drivers.begin(), drivers.end(), [](const auto& driver) {
+          return driver.first == static_cast<int>(model::SymbolKind::kVisit);
+        }))
+      continue;
+    const std::optional<std::size_t> line = most_usual(item, false), reversal = most_usual(item, true);
+    if (!line || !reversal) continue;
+    const Eigen::MatrixXd usual = maths::orthonormal(pool_.columns({*line, *reversal}), 1e-6, nullptr);
+    const Eigen::MatrixXd& own = pool_[item].columns;
+    if (own.squaredNorm() - (usual.transpose() * own).squaredNorm() >
+        evidence_.thresholds().pool.held_share * own.squaredNorm())
+      continue;
+    std::vector<std::size_t> set = without(item);
+    for (const std::size_t one : {*line, *reversal})
+      if (std::find(set.begin(), set.end(), one) == set.end()) set.push_back(one);
+    const Selection pair = evaluate(set);
+    if (set.size() > most_effects_ || pair.criterion > criterion_ + thresholds_.instrument_distance) continue;
+    chosen_ = pair.chosen;
+    criterion_ = pair.criterion;
+    chi_square_ = pair.chi_square;
+  }
 }
 
 void Finder::simplify(double share) {
@@ -232,25 +260,51 @@ double Finder::holders_of(std::size_t simple) const {
   return count;
 }
 
+bool Finder::is_of_axis_alone(std::size_t item, std::size_t axis) const {
+  const effects::Candidate& candidate = pool_.candidate(item);
+  if (candidate.choice.axis != axis || !candidate.choice.place || candidate.terms.size() != 1) return false;
+  const auto drivers = drivers_of(evidence_.machine(), candidate);
+  return std::all_of(drivers.begin(), drivers.end(), [](const auto& driver) {
+    const auto kind = static_cast<model::SymbolKind>(driver.first);
+    return kind == model::SymbolKind::kDirection || kind == model::SymbolKind::kSince ||
+           kind == model::SymbolKind::kVisit;
+  });
+}
+
+std::optional<std::size_t> Finder::most_usual(std::size_t beside, bool of_direction) const {
+  const effects::Choice& choice = pool_.candidate(beside).choice;
+  std::optional<std::size_t> best;
+  for (const std::size_t item : entry_item_) {
+    if (pool_[item].columns.cols() != 1 || !pool_[item].scored.scanned.empty() ||
+        !is_of_axis_alone(item, *choice.axis) || pool_.candidate(item).choice.place != choice.place)
+      continue;
+    const auto drivers = drivers_of(evidence_.machine(), pool_.candidate(item));
+    const bool fits = of_direction ? drivers ==
+                                         std::set<std::pair<int, std::size_t>>{
+                                             {static_cast<int>(model::SymbolKind::kDirection), *choice.axis}}
+                                   : drivers.empty();
+    if (fits && (!best || pool_.penalty(pool_[item].scored) < pool_.penalty(pool_[*best].scored)))
+      best = item;
+  }
+  return best;
+}
+
 void Finder::search_beside_lines(double from, double to) {
-  constexpr Eigen::Index kCurve = 3;  // coefficients: more than a straight line has
   const std::vector<std::size_t> before = chosen_;
-  for (const std::size_t curve : before) {
-    if (!pool_.is_function_of_an_axis(curve) || pool_[curve].columns.cols() < kCurve) continue;
-    std::vector<std::size_t> set;
-    for (const std::size_t item : before)
-      if (!pool_.is_function_of_an_axis(item) ||
-          pool_.candidate(item).choice.axis != pool_.candidate(curve).choice.axis)
-        set.push_back(item);
-    std::optional<std::size_t> line;  // the most usual form of one coefficient
-    for (const std::size_t item : entry_item_)
-      if (pool_[item].columns.cols() == 1 && pool_.contains(curve, item) &&
-          (!line || pool_.penalty(pool_[item].scored) < pool_.penalty(pool_[*line].scored)))
-        line = item;
-    if (!line) continue;
-    set.push_back(*line);
+  for (const std::size_t item : before) {
+    const effects::Choice& choice = pool_.candidate(item).choice;
+    if (!choice.axis || !is_of_axis_alone(item, *choice.axis)) continue;
+    const std::optional<std::size_t> line = most_usual(item, false), reversal = most_usual(item, true);
+    if (!line || item == line || item == reversal) continue;
+    std::vector<std::size_t> set = {*line};
+    if (reversal) set.push_back(*reversal);
+    for (const std::size_t other : before)
+      if (!is_of_axis_alone(other, *choice.axis) ||
+          !moves_alike(evidence_, *pool_.candidate(other).choice.place, *choice.place))
+        set.push_back(other);
     std::sort(set.begin(), set.end());
-    if (std::find(starts_.begin(), starts_.end(), set) != starts_.end()) continue;
+    if (set.size() > most_effects_ || std::find(starts_.begin(), starts_.end(), set) != starts_.end())
+      continue;
     scan_beside(set, from, to);
     starts_.push_back(std::move(set));
   }

@@ -119,6 +119,10 @@ class Finder {
   /// nearest to the axis. `share`: the simpler form is used if its decrease of chi^2 is at least this share
   /// of the decrease by the richer form. A `share` above 1 switches this comparison of chi^2 off.
   void simplify(double share = 2);
+  /// A term of the number of rows (a creep) whose column is nearly that of a straight line and a reversal
+  /// error of its axis, as in one run out and back: names these two instead, which every axis has, unless
+  /// there is very strong evidence against them.
+  void name_usual_pairs();
   /// Orders the accepted effects. The effect that lowers the present residual most is first. If the errors of
   /// the readings are correlated, the most significant effect is not always the largest effect.
   void order_by_size();
@@ -130,10 +134,18 @@ class Finder {
   /// terms.
   double holders_of(std::size_t simple) const;
   void search();
-  /// For each axis of which an accepted effect is a curve: adds the candidates beside a straight line in
-  /// place of all accepted functions of that axis. A curve through a few positions follows a short cyclic
-  /// error at these positions, so that its period would not be found beside the curve.
+  /// For each axis of which an accepted effect is more than a straight line or a reversal error: adds the
+  /// candidates beside a straight line and a reversal error in place of the accepted effects of that axis
+  /// alone. A curve through a few positions follows a short cyclic error, and a creep follows a lead error
+  /// and a reversal error together: beside them the period of the cyclic error would not be found.
   void search_beside_lines(double from, double to);
+  /// True if a candidate is one term that depends on one axis alone: its position, its approach direction,
+  /// its travel since a reversal or the number of rows.
+  bool is_of_axis_alone(std::size_t item, std::size_t axis) const;
+  /// Returns the candidate of one coefficient with the smallest penalty that depends on the axis of `beside`,
+  /// at the same location: on its position only or, if `of_direction`, on its approach direction only;
+  /// nullopt if there is none.
+  std::optional<std::size_t> most_usual(std::size_t beside, bool of_direction) const;
   /// Reduces the weight of readings whose errors are correlated at one pose, in a run or in time.
   void weigh_correlation();
   void share_poses();

@@ -28,11 +28,6 @@ bool is_plain_wave(const Evidence& evidence, const Pool& pool, std::size_t item)
   return range.high - range.low >= evidence.thresholds().shape.periods_of_a_wave * period;
 }
 
-bool moves_alike(const Evidence& evidence, const effects::DofPlace& a, const effects::DofPlace& b) {
-  const auto x = evidence.response(evidence.index_of(a)), y = evidence.response(evidence.index_of(b));
-  return std::abs(x.dot(y)) > evidence.thresholds().shape.moves_alike * x.norm() * y.norm();
-}
-
 /// Returns the largest group of functions, as seen from each of them. `alike` decides which belong
 /// together.
 template <class Counts, class Alike>

@@ -85,8 +85,9 @@ struct LadderStep {
   /// confirmation.
   std::optional<bool> confirmed;
   std::optional<double> evidence;
-  /// False if a named effect stands beside effects that cannot be what their names state, and this step is
-  /// one of them or may be a part of the same error. The command improve does not add such a step.
+  /// False if no cause is named. Also false if a named effect stands beside effects that cannot be what their
+  /// names state, and this step is one of them or may be a part of the same error. The command improve does
+  /// not add such a step.
   bool certain = true;
 };
 

@@ -48,6 +48,9 @@ class Decision {
       if (text.empty()) continue;
       answer_.verdict = rule.verdict;
       answer_.explanation = std::move(text);
+      // Without a named cause, the steps are candidates only.
+      if (rule.verdict != Verdict::kMissingEffect && rule.verdict != Verdict::kAmbiguous)
+        for (LadderStep& step : answer_.ladder) step.certain = false;
       return;
     }
   }
@@ -58,7 +61,7 @@ class Decision {
     std::string (Decision::*explains)();
     Verdict verdict;
   };
-  static const std::array<Rule, 18> kRules;
+  static const std::array<Rule, 19> kRules;
 
   // The rules, in the order of the table.
 
@@ -95,6 +98,22 @@ class Decision {
     if (step_.empty()) return {};
     return fmt::format("{} No cause is named; {} is only a candidate.", step_,
                        pool_.candidate(accepted_.front()).spoken);
+  }
+
+  /// No instrument drifts from row to row: an error that does depends on the previous motion, or on a
+  /// quantity that changes as fast.
+  std::string error_from_row_to_row() {
+    if (!accepted_.empty() || kind_of(answer_.noise) != "drift" ||
+        !fit::has_uncertainty(found_.measurement) || !drift_is_from_row_to_row())
+      return {};
+    const std::string drift = drift_of_instrument();
+    if (drift.empty()) return {};
+    return with_refused(
+        fmt::format("An error that changes from row to row remains, and no effect of the catalogue explains "
+                    "it (noise "
+                    "model: {}). It depends on the previous motion, or on a quantity that no column records.",
+                    ::vernier::fit::in_words(answer_.noise, answer_.noise_unit)) +
+        where_left(answer_.left));
   }
 
   std::string instrument_alone() {
@@ -377,7 +396,8 @@ class Decision {
     const auto drivers = drivers_of(finder_.evidence().machine(), candidate);
     return std::any_of(drivers.begin(), drivers.end(), [](const auto& driver) {
       const auto kind = static_cast<model::SymbolKind>(driver.first);
-      return kind == model::SymbolKind::kInput || kind == model::SymbolKind::kTime;
+      return kind == model::SymbolKind::kInput || kind == model::SymbolKind::kTime ||
+             kind == model::SymbolKind::kVisit;
     });
   }
 
@@ -530,10 +550,11 @@ class Decision {
 
 // The order is the precedence: the instrument before the machine, no name before a doubtful name,
 // several names before one.
-const std::array<Decision::Rule, 18> Decision::kRules = {{
+const std::array<Decision::Rule, 19> Decision::kRules = {{
     {&Decision::time_base, Verdict::kInstrument},
     {&Decision::outliers, Verdict::kInstrument},
     {&Decision::step_beside_a_name, Verdict::kUnexplained},
+    {&Decision::error_from_row_to_row, Verdict::kUnexplained},
     {&Decision::instrument_alone, Verdict::kInstrument},
     {&Decision::nothing_and_not_confirmed, Verdict::kUnexplained},
     {&Decision::nothing_to_add, Verdict::kConsistent},

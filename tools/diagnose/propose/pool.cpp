@@ -83,6 +83,11 @@ std::set<std::pair<int, std::size_t>> drivers_of(const model::Machine& machine,
   return drivers;
 }
 
+bool moves_alike(const Evidence& evidence, const effects::DofPlace& a, const effects::DofPlace& b) {
+  const auto x = evidence.response(evidence.index_of(a)), y = evidence.response(evidence.index_of(b));
+  return std::abs(x.dot(y)) > evidence.thresholds().shape.moves_alike * x.norm() * y.norm();
+}
+
 Pool::Pool(const Evidence& evidence, const Scanner& scanner)
     : evidence_(evidence),
       thresholds_(evidence.thresholds().pool),

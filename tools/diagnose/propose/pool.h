@@ -16,6 +16,10 @@ namespace vernier::diagnose {
 std::set<std::pair<int, std::size_t>> drivers_of(const model::Machine& machine,
                                                  const effects::Candidate& candidate);
 
+/// True if motions at two locations move the readings in the same way: the cosine between the responses of
+/// the readings exceeds ShapeThresholds::moves_alike.
+bool moves_alike(const Evidence& evidence, const effects::DofPlace& a, const effects::DofPlace& b);
+
 /// The most promising candidates of a search. The columns of all candidates are stored together, so that sets
 /// of candidates can be compared.
 class Pool {
