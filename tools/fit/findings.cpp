@@ -267,8 +267,10 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                     fmt::format("{}: the model lacks an effect of {:.3g}, {:.3g}, {:.3g} um in x, y, z.",
                                 what, lack_um.x(), lack_um.y(), lack_um.z())});
   }
-  const bool lacks_effect =
-      std::any_of(list.begin(), list.end(), [](const auto& one) { return one.code == "something-missing"; });
+  // With an unknown noise, nothing distinguishes a disturbance from a missing effect.
+  const bool may_lack_effect = !result.noise_um || std::any_of(list.begin(), list.end(), [](const auto& one) {
+    return one.code == "something-missing";
+  });
   if (!result.noise_um && result.before.rms_um)
     list.push_back({"noise-unknown", 0,
                     "The readings have no standard uncertainty u and no repeats, so the fit cannot "
@@ -280,9 +282,9 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                                 *result.check_ratio)});
   if (!record.disturbance.empty())
     list.push_back({"disturbed", record.disturbed,
-                    lacks_effect ? "Possibly the survey was disturbed: " + record.disturbance +
-                                       ". The missing effect can look like this disturbance."
-                                 : "The survey was disturbed: " + record.disturbance + "."});
+                    may_lack_effect ? "Possibly the survey was disturbed: " + record.disturbance +
+                                          ". A missing effect can look like this disturbance."
+                                    : "The survey was disturbed: " + record.disturbance + "."});
   if (const double share = repeated_poses(m); share >= 0.5)
     list.push_back({"check-not-independent", share,
                     fmt::format("{:.0f} % of the check rows repeat poses of fit rows: these check rows "
