@@ -172,6 +172,40 @@ TEST(SheetSign, ATitleAgainstTheHeadingIsUnclear) {
             std::string::npos);
 }
 
+TEST(SheetSign, TooShortOnNegativePositionsMeansAnActualValueAboveTheNominalOne) {
+  const std::string title = "Abweichung positiv, wenn zu kurz\nSoll Z [mm];Abweichung Z [um]\n";
+  const auto z = [&](const std::string& rows, const std::string& sign = "") {
+    SheetWords words;
+    words.sign = sign;
+    try {
+      const SheetReading reading = read_as_sheet(title + rows, "s.csv", words);
+      return table_of_sheet(reading.sheet, reading.table, reading.columns, reading.wishes)
+          .find("z")
+          ->cells.back();
+    } catch (const text::InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(z("0;0,5\n-100;1,5\n"), "-99.9985");
+  EXPECT_EQ(z("0;0,5\n100;1,5\n"), "99.9985");
+  // Positions on both sides of zero: the side of "short" is not known.
+  EXPECT_NE(z("-100;0,5\n100;1,5\n").find("give --sign"), std::string::npos);
+  EXPECT_EQ(z("-100;0,5\n100;1,5\n", "actual-nominal"), "100.0015");
+}
+
+TEST(SheetSign, TooShortInTheHeadingsOfRunsFollowsTheSideOfThePositionsToo) {
+  const auto z = [](const std::string& position) {
+    const SheetReading reading = read_as_sheet(
+        "Soll Z [mm];1+ (positiv = zu kurz) [um];1- (positiv = zu kurz) [um]\n" + position + ";1,5;1,5\n",
+        "s.csv", SheetWords{});
+    return table_of_sheet(reading.sheet, reading.table, reading.columns, reading.wishes)
+        .find("z")
+        ->cells.at(0);
+  };
+  EXPECT_EQ(z("-100"), "-99.9985");
+  EXPECT_EQ(z("100"), "99.9985");
+}
+
 TEST(SheetSign, WithoutDeviationsATitleNeedsNoSign) {
   EXPECT_EQ(read("Messprotokoll Soll - Ist\nSoll X [mm];Ist X [mm]\n100;100,5\n"), "100.5");
 }

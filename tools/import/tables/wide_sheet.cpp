@@ -29,6 +29,7 @@ struct RunColumn {
   std::string run, axis, unit;
   int sense = 0;
   bool deviation = false, measured = false, turned = false, pos = false;
+  bool length = false;    // the sign by the length of the motion: "positiv = zu kurz"
   bool relative = false;  // the direction by a word that is not about the axis: "hin", "forward"
 };
 
@@ -116,6 +117,7 @@ std::optional<RunColumn> run_column(const sheet::Heading& heading) {
   const SignSaid sign = sign_said(heading.text, SignPlace::kHeading);
   if (sign == SignSaid::kUnclear) return std::nullopt;
   column.turned = sign == SignSaid::kNominalLessActual;
+  column.length = sign != sign_said(heading.text, SignPlace::kHeading, Travel::kBothSides);
   std::string name = with_its_sign(heading);
   if (sign != SignSaid::kNothing) {  // the text in brackets gives the sign only
     const auto open = name.find_first_of("(["), close = name.find_last_of(")]");
@@ -208,6 +210,7 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
     all.deviation |= one.deviation;
     all.measured |= one.measured;
     all.turned |= one.turned;
+    all.length |= one.length;
     if (all.unit.empty()) all.unit = one.unit;
   }
   for (const std::string& title : title_cells(sheet, table)) {
@@ -232,7 +235,9 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
   sheet::Heading heading;
   heading.name = std::string(all.measured && !all.deviation ? "Actual" : "Deviation") +
                  (all.axis.empty() ? "" : " " + all.axis);
-  heading.text = heading.name + (all.turned ? " (nominal-actual)" : "");
+  heading.text = heading.name + (all.length   ? all.turned ? " (positive = short)" : " (positive = long)"
+                                 : all.turned ? " (nominal-actual)"
+                                              : "");
   heading.unit = all.unit;
   return heading;
 }

@@ -346,7 +346,7 @@ int sign_of_word(const std::string& word) {
 }
 
 /// "positiv, wenn zu kurz": the sign of a deviation by the length that the machine travels. Too short means
-/// that the actual value is below the nominal one.
+/// that the actual value is below the nominal one, if the positions are positive.
 SignSaid sign_of_size(std::string_view text) {
   static const WordSet kShort = {"kurz", "kürzer", "short", "shorter", "undershoot"},
                        kLong = {"lang", "länger", "weit", "long", "longer", "far", "overshoot"},
@@ -373,6 +373,13 @@ SignSaid sign_of_size(std::string_view text) {
   return said;
 }
 
+/// The sign of a text about a length, for positions on this side of zero.
+SignSaid on_side(SignSaid said, Travel travel) {
+  if (said == SignSaid::kNothing || said == SignSaid::kUnclear || travel == Travel::kPositive) return said;
+  if (travel == Travel::kBothSides) return SignSaid::kUnclear;
+  return said == SignSaid::kNominalLessActual ? SignSaid::kActualLessNominal : SignSaid::kNominalLessActual;
+}
+
 }  // namespace
 
 SignSaid both_signs(SignSaid one, SignSaid other) {
@@ -380,14 +387,14 @@ SignSaid both_signs(SignSaid one, SignSaid other) {
   return other == SignSaid::kNothing || other == one ? one : SignSaid::kUnclear;
 }
 
-SignSaid sign_said(std::string_view text, SignPlace place) {
+SignSaid sign_said(std::string_view text, SignPlace place, Travel travel) {
   const SignTokens tokens(text);
   const bool in_words = leads_from_nominal_to_actual(tokens.list()) || compares_in_words(tokens.list(), text);
   SignSaid said = in_words ? SignSaid::kUnclear : SignSaid::kNothing;
   for (std::size_t k = 0; k < tokens.list().size(); ++k)
     if (tokens.list()[k].kind == SignKind::kMinus)
       said = both_signs(said, Difference(tokens.list(), k, place).said());
-  return both_signs(said, sign_of_size(text));
+  return both_signs(said, on_side(sign_of_size(text), travel));
 }
 
 }  // namespace vernier::importer
