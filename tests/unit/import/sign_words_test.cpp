@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tools/import/tables/sheet_import.h"
+#include "tools/sheet/workbook_writer.h"
 #include "tools/text/error.h"
 
 namespace vernier::sign_words_test {
@@ -96,6 +97,16 @@ const Case kCases[] = {
     {"positiv, wenn zu kurz; negativ, wenn zu kurz", kTitle, kUnclear},
     {"kurze Messung, Ergebnis positiv", kTitle, kNothing},
     {"Taster kurz, Ergebnis positiv", kTitle, kUnclear},
+    // A comparison of both.
+    {"Abweichung positiv, wenn Ist kleiner als Soll", kTitle, kNominal},
+    {"+ = Istma\u00df kleiner als Sollma\u00df", kTitle, kNominal},
+    {"Ist gr\u00f6\u00dfer als Soll = negativ", kTitle, kNominal},
+    {"Vorzeichen: plus, wenn Ist unter Soll liegt", kTitle, kNominal},
+    {"Error is positive when the actual position is less than the target", kTitle, kNominal},
+    {"positiv: Soll < Ist", kTitle, kActual},
+    {"Vorzeichen: + bedeutet Istweg zu klein", kTitle, kNominal},
+    {"Minuszeichen: Ma\u00df zu gro\u00df", kTitle, kNominal},
+    {"+ = Istma\u00df zu gro\u00df", kTitle, kActual},
     // A sign that cannot be decided.
     {"Abweichungen Maschine - Laser", kTitle, kUnclear},
     {"Soll-Ist-Abweichung X [um]", kHeading, kUnclear},
@@ -107,7 +118,22 @@ const Case kCases[] = {
     {"Abweichung = Referenz - Messwert", kTitle, kUnclear},
     {"Abweichung = Soll - Pr\u00fcfling", kTitle, kUnclear},
     {"Abweichung = -(Ist - Soll)", kTitle, kUnclear},
-    {"Abweichung positiv, wenn Ist kleiner als Soll", kTitle, kUnclear},
+    // A text about the sign that no rule reads.
+    {"Vorzeichen umgekehrt (Korrekturwerte)", kTitle, kUnclear},
+    {"Korrekturwerte", kTitle, kUnclear},
+    {"Abweichung X (Korrektursinn) [um]", kHeading, kUnclear},
+    {"Error X (compensation sign) [um]", kHeading, kUnclear},
+    {"positiv, wenn Ist das Soll \u00fcberschreitet", kTitle, kUnclear},
+    {"positiv, wenn Ist gr\u00f6\u00dfer und negativ, wenn Ist kleiner als Soll", kTitle, kUnclear},
+    {"Korrektur positiv, wenn Ist kleiner als Soll", kTitle, kUnclear},
+    {"positiv, wenn Ist nicht kleiner als Soll", kTitle, kUnclear},
+    {"Temperatur zu gro\u00df, Ergebnis positiv", kTitle, kUnclear},
+    // Not about the sign of deviations.
+    {"Messung nach Eingabe der Korrekturwerte", kTitle, kNothing},
+    {"Korrekturwerte gel\u00f6scht", kTitle, kNothing},
+    {"Verfahrweg gro\u00df, Anfahrt in positiver Richtung", kTitle, kNothing},
+    {"Messung an Maschine 4 positiv verlaufen", kTitle, kNothing},
+    {"Vorzeichen", kHeading, kNothing},
     {"Abweichung = Soll - Ist, Fehler = Ist - Soll", kTitle, kUnclear},
 };
 
@@ -204,6 +230,35 @@ TEST(SheetSign, TooShortInTheHeadingsOfRunsFollowsTheSideOfThePositionsToo) {
   };
   EXPECT_EQ(z("-100"), "-99.9985");
   EXPECT_EQ(z("100"), "99.9985");
+}
+
+TEST(SheetSign, ATextAboutTheSignThatIsNotReadAsksForTheSign) {
+  const std::string table = "Soll X [mm];Abweichung X [um]\n100;1,5\n";
+  for (const char* title : {"Vorzeichen umgekehrt (Korrekturwerte)\n", "Vorzeichen;umgekehrt\n",
+                            "# Korrekturwerte in um\n", "Abweichung im Korrektursinn;;\n"}) {
+    const std::string refused = read(title + table);
+    EXPECT_NE(refused.find("this text does not state clearly"), std::string::npos) << refused;
+    EXPECT_EQ(read(title + table, "nominal-actual"), "99.9985") << title;
+  }
+  EXPECT_EQ(read("Vorzeichen;Abweichung = Ist - Soll\n" + table), "100.0015");
+  EXPECT_EQ(read("Vorzeichen;Ist - Soll\n" + table), "100.0015");
+}
+
+TEST(SheetSign, ATextThatIsRefusedHasNoNoteOfASign) {
+  const SheetReading reading =
+      read_as_sheet("Vorzeichen umgekehrt\nSoll X [mm];Abweichung X [um]\n100;1,5\n", "s.csv", SheetWords{});
+  EXPECT_TRUE(reading.sheet.notes.empty());
+}
+
+TEST(SheetSign, ALabelOnACoverSheetIsAboutTheNextCell) {
+  for (const auto& [text, sign] : {std::pair("+ = zu kurz", kNominal), std::pair("umgekehrt", kUnclear)}) {
+    const std::string book = sheet::workbook_of(
+        {{"Deckblatt", {{"Vorzeichen", text}}},
+         {"X", {{"Soll X [mm]", "Abweichung X [um]"}, {"100", "1.5"}, {"200", "1.5"}, {"300", "1.5"}}}});
+    const SheetReading reading = read_as_sheet(book, "b.xlsx", SheetWords{});
+    EXPECT_EQ(reading.columns.at(1).turned, sign == kNominal) << text;
+    EXPECT_EQ(!reading.columns.at(1).sign_text.empty(), sign == kUnclear) << text;
+  }
 }
 
 TEST(SheetSign, WithoutDeviationsATitleNeedsNoSign) {
