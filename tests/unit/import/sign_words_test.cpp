@@ -261,6 +261,24 @@ TEST(SheetSign, ALabelOnACoverSheetIsAboutTheNextCell) {
   }
 }
 
+TEST(SheetSign, AMagnitudeHasNoSign) {
+  for (const char* heading :
+       {"Betrag der Abweichung X [um]", "Absolute error X [um]", "Abweichung X (Betrag) [um]"}) {
+    const std::string table = "Soll X [mm];" + std::string(heading) + "\n100;1,5\n";
+    EXPECT_NE(read(table).find("a magnitude has no sign"), std::string::npos) << heading;
+    EXPECT_NE(read(table, "actual-nominal").find("a magnitude has no sign"), std::string::npos) << heading;
+    EXPECT_EQ(read(table + "200;-1\n"), "100.0015") << heading;  // these values have signs
+  }
+  const std::string table = "Soll X [mm];Abweichung X [um]\n100;1,5\n";
+  EXPECT_NE(read("Betr\u00e4ge der Abweichungen\n" + table).find("a magnitude has no sign"),
+            std::string::npos);
+  EXPECT_EQ(read("Absolutes Messsystem\n" + table), "100.0015");
+  SheetWords words;
+  words.deviations = {"X=|Abweichung X| [um]"};
+  EXPECT_NE(read("Soll X [mm];|Abweichung X| [um]\n100;1,5\n", "", words).find("a magnitude has no sign"),
+            std::string::npos);
+}
+
 TEST(SheetSign, WithoutDeviationsATitleNeedsNoSign) {
   EXPECT_EQ(read("Messprotokoll Soll - Ist\nSoll X [mm];Ist X [mm]\n100;100,5\n"), "100.5");
 }
