@@ -43,6 +43,16 @@ TEST(SheetShape, SignsOfAMeanAreComputedRowsAlsoInAColumnThatIsLeftOut) {
         << label;
 }
 
+TEST(SheetShape, ReadingsOfEachDirectionBelongToItsPositions) {
+  const std::string pairs = "X Soll hin [mm];Abw. X hin [um];X Soll rück [mm];Abw. X rück [um]\n";
+  EXPECT_THAT(read(pairs + "0;1;100;4\n50;2;50;5\n100;3;0;6\n"),
+              testing::StartsWith("X[mm],dirX,run,x[mm]\n0,1,1,0.001\n50,1,1,50.002\n100,1,1,100.003\n"
+                                  "100,-1,1,100.004\n50,-1,1,50.005\n0,-1,1,0.006\nnote: the readings"));
+  EXPECT_THAT(read("X Soll hin [mm];Abw. X 1 hin [um];X Soll rück [mm];Abw. X 1 rück [um];X Soll hin [mm];"
+                   "Abw. X 2 hin [um]\n0;1;9;4;0;1\n9;1;0;4;9;1\n"),
+              HasSubstr("a second column of positions in this approach direction"));
+}
+
 TEST(SheetShape, ARowWithAnUnknownWordIsNotFilled) {
   SheetWords fill;
   fill.left = {"Nr"};
