@@ -53,6 +53,20 @@ TEST(SheetShape, ReadingsOfEachDirectionBelongToItsPositions) {
               HasSubstr("a second column of positions in this approach direction"));
 }
 
+TEST(SheetShape, DirectionsAreReadOrNoted) {
+  EXPECT_THAT(read("X [mm];Abw. X [um];Ri;Lauf\n0;1;H;1\n50;2;H;1\n50;3;R;2\n0;4;R;2\n"),
+              testing::StartsWith("X[mm],x[mm],dirX,run\n0,0.001,1,1\n50,50.002,1,1\n50,50.003,-1,2\n"));
+  EXPECT_THAT(read("X [mm];Abw. X [um];Lauf\n0;1;Lauf 1 +\n50;2;Lauf 1 +\n50;3;Lauf 2 -\n0;4;Lauf 2 -\n"),
+              testing::StartsWith("X[mm],x[mm],run,dirX\n0,0.001,1,1\n50,50.002,1,1\n50,50.003,2,-1\n"));
+  const std::string sides = "0;1;von links\n50;2;von links\n50;3;von rechts\n0;4;von rechts\n";
+  EXPECT_THAT(read("X [mm];Abw. X [um];Anfahrt\n" + sides),
+              HasSubstr("note: \"Anfahrt\" may contain approach directions (links, rechts)"));
+  EXPECT_THAT(read("X [mm];Abw. X [um];Lauf\n0;1;Lauf a +\n50;2;Lauf a -\n"),
+              HasSubstr("note: \"Lauf\" may contain approach directions (+, -)"));
+  EXPECT_THAT(read("X [mm];Abw. X [um];Richtung;Punkt\n0;1;+;links\n50;2;-;rechts\n"),
+              Not(HasSubstr("may contain")));
+}
+
 TEST(SheetShape, ARowWithAnUnknownWordIsNotFilled) {
   SheetWords fill;
   fill.left = {"Nr"};
