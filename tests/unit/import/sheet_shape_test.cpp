@@ -43,6 +43,30 @@ TEST(SheetShape, SignsOfAMeanAreComputedRowsAlsoInAColumnThatIsLeftOut) {
         << label;
 }
 
+TEST(SheetShape, ReadingsOfEachDirectionBelongToItsPositions) {
+  const std::string pairs = "X Soll hin [mm];Abw. X hin [um];X Soll rück [mm];Abw. X rück [um]\n";
+  EXPECT_THAT(read(pairs + "0;1;100;4\n50;2;50;5\n100;3;0;6\n"),
+              testing::StartsWith("X[mm],dirX,run,x[mm]\n0,1,1,0.001\n50,1,1,50.002\n100,1,1,100.003\n"
+                                  "100,-1,1,100.004\n50,-1,1,50.005\n0,-1,1,0.006\nnote: the readings"));
+  EXPECT_THAT(read("X Soll hin [mm];Abw. X 1 hin [um];X Soll rück [mm];Abw. X 1 rück [um];X Soll hin [mm];"
+                   "Abw. X 2 hin [um]\n0;1;9;4;0;1\n9;1;0;4;9;1\n"),
+              HasSubstr("a second column of positions in this approach direction"));
+}
+
+TEST(SheetShape, DirectionsAreReadOrNoted) {
+  EXPECT_THAT(read("X [mm];Abw. X [um];Ri;Lauf\n0;1;H;1\n50;2;H;1\n50;3;R;2\n0;4;R;2\n"),
+              testing::StartsWith("X[mm],x[mm],dirX,run\n0,0.001,1,1\n50,50.002,1,1\n50,50.003,-1,2\n"));
+  EXPECT_THAT(read("X [mm];Abw. X [um];Lauf\n0;1;Lauf 1 +\n50;2;Lauf 1 +\n50;3;Lauf 2 -\n0;4;Lauf 2 -\n"),
+              testing::StartsWith("X[mm],x[mm],run,dirX\n0,0.001,1,1\n50,50.002,1,1\n50,50.003,2,-1\n"));
+  const std::string sides = "0;1;von links\n50;2;von links\n50;3;von rechts\n0;4;von rechts\n";
+  EXPECT_THAT(read("X [mm];Abw. X [um];Anfahrt\n" + sides),
+              HasSubstr("note: \"Anfahrt\" may contain approach directions (links, rechts)"));
+  EXPECT_THAT(read("X [mm];Abw. X [um];Lauf\n0;1;Lauf a +\n50;2;Lauf a -\n"),
+              HasSubstr("note: \"Lauf\" may contain approach directions (+, -)"));
+  EXPECT_THAT(read("X [mm];Abw. X [um];Richtung;Punkt\n0;1;+;links\n50;2;-;rechts\n"),
+              Not(HasSubstr("may contain")));
+}
+
 TEST(SheetShape, ARowWithAnUnknownWordIsNotFilled) {
   SheetWords fill;
   fill.left = {"Nr"};

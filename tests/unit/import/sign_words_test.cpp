@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tools/import/tables/sheet_import.h"
+#include "tools/sheet/workbook_writer.h"
 #include "tools/text/error.h"
 
 namespace vernier::sign_words_test {
@@ -96,6 +97,16 @@ const Case kCases[] = {
     {"positiv, wenn zu kurz; negativ, wenn zu kurz", kTitle, kUnclear},
     {"kurze Messung, Ergebnis positiv", kTitle, kNothing},
     {"Taster kurz, Ergebnis positiv", kTitle, kUnclear},
+    // A comparison of both.
+    {"Abweichung positiv, wenn Ist kleiner als Soll", kTitle, kNominal},
+    {"+ = Istma\u00df kleiner als Sollma\u00df", kTitle, kNominal},
+    {"Ist gr\u00f6\u00dfer als Soll = negativ", kTitle, kNominal},
+    {"Vorzeichen: plus, wenn Ist unter Soll liegt", kTitle, kNominal},
+    {"Error is positive when the actual position is less than the target", kTitle, kNominal},
+    {"positiv: Soll < Ist", kTitle, kActual},
+    {"Vorzeichen: + bedeutet Istweg zu klein", kTitle, kNominal},
+    {"Minuszeichen: Ma\u00df zu gro\u00df", kTitle, kNominal},
+    {"+ = Istma\u00df zu gro\u00df", kTitle, kActual},
     // A sign that cannot be decided.
     {"Abweichungen Maschine - Laser", kTitle, kUnclear},
     {"Soll-Ist-Abweichung X [um]", kHeading, kUnclear},
@@ -107,7 +118,22 @@ const Case kCases[] = {
     {"Abweichung = Referenz - Messwert", kTitle, kUnclear},
     {"Abweichung = Soll - Pr\u00fcfling", kTitle, kUnclear},
     {"Abweichung = -(Ist - Soll)", kTitle, kUnclear},
-    {"Abweichung positiv, wenn Ist kleiner als Soll", kTitle, kUnclear},
+    // A text about the sign that no rule reads.
+    {"Vorzeichen umgekehrt (Korrekturwerte)", kTitle, kUnclear},
+    {"Korrekturwerte", kTitle, kUnclear},
+    {"Abweichung X (Korrektursinn) [um]", kHeading, kUnclear},
+    {"Error X (compensation sign) [um]", kHeading, kUnclear},
+    {"positiv, wenn Ist das Soll \u00fcberschreitet", kTitle, kUnclear},
+    {"positiv, wenn Ist gr\u00f6\u00dfer und negativ, wenn Ist kleiner als Soll", kTitle, kUnclear},
+    {"Korrektur positiv, wenn Ist kleiner als Soll", kTitle, kUnclear},
+    {"positiv, wenn Ist nicht kleiner als Soll", kTitle, kUnclear},
+    {"Temperatur zu gro\u00df, Ergebnis positiv", kTitle, kUnclear},
+    // Not about the sign of deviations.
+    {"Messung nach Eingabe der Korrekturwerte", kTitle, kNothing},
+    {"Korrekturwerte gel\u00f6scht", kTitle, kNothing},
+    {"Verfahrweg gro\u00df, Anfahrt in positiver Richtung", kTitle, kNothing},
+    {"Messung an Maschine 4 positiv verlaufen", kTitle, kNothing},
+    {"Vorzeichen", kHeading, kNothing},
     {"Abweichung = Soll - Ist, Fehler = Ist - Soll", kTitle, kUnclear},
 };
 
@@ -169,6 +195,87 @@ TEST(SheetSign, AnUnclearSignIsRefusedWithTheOptionThatStatesIt) {
 
 TEST(SheetSign, ATitleAgainstTheHeadingIsUnclear) {
   EXPECT_NE(read("Abweichung = Soll - Ist\nSoll X [mm];Abw. X (Ist-Soll) [um]\n100;1,5\n").find("--sign"),
+            std::string::npos);
+}
+
+TEST(SheetSign, TooShortOnNegativePositionsMeansAnActualValueAboveTheNominalOne) {
+  const std::string title = "Abweichung positiv, wenn zu kurz\nSoll Z [mm];Abweichung Z [um]\n";
+  const auto z = [&](const std::string& rows, const std::string& sign = "") {
+    SheetWords words;
+    words.sign = sign;
+    try {
+      const SheetReading reading = read_as_sheet(title + rows, "s.csv", words);
+      return table_of_sheet(reading.sheet, reading.table, reading.columns, reading.wishes)
+          .find("z")
+          ->cells.back();
+    } catch (const text::InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(z("0;0,5\n-100;1,5\n"), "-99.9985");
+  EXPECT_EQ(z("0;0,5\n100;1,5\n"), "99.9985");
+  // Positions on both sides of zero: the side of "short" is not known.
+  EXPECT_NE(z("-100;0,5\n100;1,5\n").find("give --sign"), std::string::npos);
+  EXPECT_EQ(z("-100;0,5\n100;1,5\n", "actual-nominal"), "100.0015");
+}
+
+TEST(SheetSign, TooShortInTheHeadingsOfRunsFollowsTheSideOfThePositionsToo) {
+  const auto z = [](const std::string& position) {
+    const SheetReading reading = read_as_sheet(
+        "Soll Z [mm];1+ (positiv = zu kurz) [um];1- (positiv = zu kurz) [um]\n" + position + ";1,5;1,5\n",
+        "s.csv", SheetWords{});
+    return table_of_sheet(reading.sheet, reading.table, reading.columns, reading.wishes)
+        .find("z")
+        ->cells.at(0);
+  };
+  EXPECT_EQ(z("-100"), "-99.9985");
+  EXPECT_EQ(z("100"), "99.9985");
+}
+
+TEST(SheetSign, ATextAboutTheSignThatIsNotReadAsksForTheSign) {
+  const std::string table = "Soll X [mm];Abweichung X [um]\n100;1,5\n";
+  for (const char* title : {"Vorzeichen umgekehrt (Korrekturwerte)\n", "Vorzeichen;umgekehrt\n",
+                            "# Korrekturwerte in um\n", "Abweichung im Korrektursinn;;\n"}) {
+    const std::string refused = read(title + table);
+    EXPECT_NE(refused.find("this text does not state clearly"), std::string::npos) << refused;
+    EXPECT_EQ(read(title + table, "nominal-actual"), "99.9985") << title;
+  }
+  EXPECT_EQ(read("Vorzeichen;Abweichung = Ist - Soll\n" + table), "100.0015");
+  EXPECT_EQ(read("Vorzeichen;Ist - Soll\n" + table), "100.0015");
+}
+
+TEST(SheetSign, ATextThatIsRefusedHasNoNoteOfASign) {
+  const SheetReading reading =
+      read_as_sheet("Vorzeichen umgekehrt\nSoll X [mm];Abweichung X [um]\n100;1,5\n", "s.csv", SheetWords{});
+  EXPECT_TRUE(reading.sheet.notes.empty());
+}
+
+TEST(SheetSign, ALabelOnACoverSheetIsAboutTheNextCell) {
+  for (const auto& [text, sign] : {std::pair("+ = zu kurz", kNominal), std::pair("umgekehrt", kUnclear)}) {
+    const std::string book = sheet::workbook_of(
+        {{"Deckblatt", {{"Vorzeichen", text}}},
+         {"X", {{"Soll X [mm]", "Abweichung X [um]"}, {"100", "1.5"}, {"200", "1.5"}, {"300", "1.5"}}}});
+    const SheetReading reading = read_as_sheet(book, "b.xlsx", SheetWords{});
+    EXPECT_EQ(reading.columns.at(1).turned, sign == kNominal) << text;
+    EXPECT_EQ(!reading.columns.at(1).sign_text.empty(), sign == kUnclear) << text;
+  }
+}
+
+TEST(SheetSign, AMagnitudeHasNoSign) {
+  for (const char* heading :
+       {"Betrag der Abweichung X [um]", "Absolute error X [um]", "Abweichung X (Betrag) [um]"}) {
+    const std::string table = "Soll X [mm];" + std::string(heading) + "\n100;1,5\n";
+    EXPECT_NE(read(table).find("a magnitude has no sign"), std::string::npos) << heading;
+    EXPECT_NE(read(table, "actual-nominal").find("a magnitude has no sign"), std::string::npos) << heading;
+    EXPECT_EQ(read(table + "200;-1\n"), "100.0015") << heading;  // these values have signs
+  }
+  const std::string table = "Soll X [mm];Abweichung X [um]\n100;1,5\n";
+  EXPECT_NE(read("Betr\u00e4ge der Abweichungen\n" + table).find("a magnitude has no sign"),
+            std::string::npos);
+  EXPECT_EQ(read("Absolutes Messsystem\n" + table), "100.0015");
+  SheetWords words;
+  words.deviations = {"X=|Abweichung X| [um]"};
+  EXPECT_NE(read("Soll X [mm];|Abweichung X| [um]\n100;1,5\n", "", words).find("a magnitude has no sign"),
             std::string::npos);
 }
 

@@ -29,6 +29,8 @@ struct Codes {
   bool doubtful = false;  // the usual meaning is often another one
 };
 
+constexpr std::size_t kMostRuns = 40;  // different names of runs; more are names of points
+
 std::string code_of(const std::string& cell) {
   std::string code = text::in_small_letters(cell);
   while (code.ends_with('.')) code.pop_back();
@@ -144,9 +146,14 @@ void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table,
   write_directions(sheet, table, k, *codes);
 }
 
-/// "1+" or "2 hin": the run and the direction; nullopt for other texts.
-std::optional<std::pair<std::string, std::string>> run_and_direction(const std::string& cell) {
+/// "1+", "2 hin" or "Lauf 1 +": the run and the direction; nullopt for other texts.
+std::optional<std::pair<std::string, std::string>> run_and_direction(std::string cell) {
   const std::string_view digits = "0123456789";
+  static const std::set<std::string> kRuns = {"lauf",      "run",  "messlauf", "messreihe",
+                                              "durchgang", "pass", "zyklus",   "cycle"};
+  if (const std::size_t first = cell.find_first_of(digits);
+      first != std::string::npos && kRuns.contains(code_of(text::trimmed(cell.substr(0, first)))))
+    cell.erase(0, first);
   std::size_t end = 0;
   while (end < cell.size() && digits.find(cell[end]) != std::string_view::npos) ++end;
   if (end == 0 || end == cell.size()) return std::nullopt;
@@ -200,8 +207,39 @@ void split_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
                   table.headings[*runs].text));
 }
 
+namespace {
+
+/// Notes a column of words that looks like approach directions, if the table has no column of directions.
+void note_direction_not_read(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                             const std::vector<SheetColumn>& columns) {
+  for (const SheetColumn& column : columns)
+    if (column.use == SheetColumn::Use::kColumn && is_sense(column.name)) return;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k].use != SheetColumn::Use::kColumn || !(columns[k].words || is_label(columns[k].name)))
+      continue;
+    std::set<std::string> codes, ends;
+    for (std::size_t row = table.first_data; row < sheet.rows.size() && codes.size() <= kMostRuns; ++row) {
+      const std::string code = code_of(sheet.rows[row][k]);
+      if (code.empty() || !codes.insert(code).second) continue;
+      ends.insert(code.substr(code.find_last_of(" _") + 1));
+    }
+    const auto says = [](const std::string& code) { return sense_said(code) != 0; };
+    const bool words = ends.size() == 2 && sense_said(*ends.begin()) * sense_said(*ends.rbegin()) == -1 &&
+                       std::all_of(ends.begin(), ends.end(), says);
+    const auto pair = meaning_of(ends);
+    if (words || (pair && !pair->doubtful))
+      sheet.notes.push_back(fmt::format(
+          "\"{}\" may contain approach directions ({}) and is not read as directions: write them into "
+          "a column of their own as + and -, with the heading Richtung",
+          table.headings[k].text, fmt::format("{}, {}", *ends.begin(), *ends.rbegin())));
+  }
+}
+
+}  // namespace
+
 void settle_directions(sheet::Sheet& sheet, const sheet::SheetTable& table,
                        const std::vector<SheetColumn>& columns) {
+  note_direction_not_read(sheet, table, columns);
   for (std::size_t k = 0; k < columns.size(); ++k)
     if (columns[k].use == SheetColumn::Use::kColumn && is_sense(columns[k].name) &&
         table.headings[k].text != columns[k].name)

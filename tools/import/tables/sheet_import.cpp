@@ -167,6 +167,7 @@ void note_signs(SheetReading& reading) {
   for (const SheetColumn& column : reading.columns) {
     if (column.use != SheetColumn::Use::kDeviation) continue;
     deviations = true;
+    if (!column.sign_text.empty()) continue;  // the table is refused
     if (column.sign_from.empty() || !noted.insert(column.sign_from).second) continue;
     reading.sheet.notes.push_back(
         fmt::format("the sign of the deviations is {}, by the text \"{}\"; if this is wrong, give --sign {}",

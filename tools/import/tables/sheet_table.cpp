@@ -230,6 +230,32 @@ void refuse_unclear_signs(const std::vector<SheetColumn>& columns) {
                              "or nominal - actual: give --sign actual-nominal or --sign nominal-actual");
 }
 
+/// Refuses deviations without their signs: "Betrag der Abweichung" in the heading or in a title, and no value
+/// below zero.
+void refuse_magnitudes(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                       const std::vector<SheetColumn>& columns) {
+  const auto refuse = [](text::Place place, const std::string& text) {
+    throw text::InputError(
+        std::move(place), text,
+        "the deviations are magnitudes, and a magnitude has no sign: import the values with their signs, or "
+        "leave the column out (--leave); if the values have signs, correct this text");
+  };
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k].use != SheetColumn::Use::kDeviation) continue;
+    bool below = false;
+    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+      const auto number = sheet::plain_number(sheet.rows[row][k], sheet.decimal_comma);
+      const auto value = number ? text::parse_number(*number) : std::nullopt;
+      below |= value && *value < 0;
+    }
+    if (below) continue;
+    if (says_magnitude(table.headings[k].text))
+      refuse({sheet.file, sheet.line[table.heading_row]}, table.headings[k].text);
+    for (const std::string& title : title_cells(sheet, table))
+      if (says_magnitude_of_deviation(title)) refuse({sheet.file, sheet.line.front()}, title);
+  }
+}
+
 /// Refuses positions and readings without a unit, with the options that state the units.
 void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                           const std::vector<SheetColumn>& columns, const Readings& readings,
@@ -342,6 +368,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
     measured |= column.use == SheetColumn::Use::kDeviation || readings.contain(column);
   }
   refuse_unclear_signs(columns);
+  refuse_magnitudes(sheet, table, columns);
   refuse_without_units(sheet, table, columns, readings, guess);
   if (const std::string empty = measured ? "" : empty_readings(table, columns); !empty.empty())
     throw text::InputError(

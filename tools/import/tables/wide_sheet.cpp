@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/format/columns.h"
@@ -29,6 +30,7 @@ struct RunColumn {
   std::string run, axis, unit;
   int sense = 0;
   bool deviation = false, measured = false, turned = false, pos = false;
+  bool length = false;    // the sign by the length of the motion: "positiv = zu kurz"
   bool relative = false;  // the direction by a word that is not about the axis: "hin", "forward"
 };
 
@@ -116,6 +118,7 @@ std::optional<RunColumn> run_column(const sheet::Heading& heading) {
   const SignSaid sign = sign_said(heading.text, SignPlace::kHeading);
   if (sign == SignSaid::kUnclear) return std::nullopt;
   column.turned = sign == SignSaid::kNominalLessActual;
+  column.length = sign != sign_said(heading.text, SignPlace::kHeading, Travel::kBothSides);
   std::string name = with_its_sign(heading);
   if (sign != SignSaid::kNothing) {  // the text in brackets gives the sign only
     const auto open = name.find_first_of("(["), close = name.find_last_of(")]");
@@ -208,6 +211,7 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
     all.deviation |= one.deviation;
     all.measured |= one.measured;
     all.turned |= one.turned;
+    all.length |= one.length;
     if (all.unit.empty()) all.unit = one.unit;
   }
   for (const std::string& title : title_cells(sheet, table)) {
@@ -232,7 +236,9 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
   sheet::Heading heading;
   heading.name = std::string(all.measured && !all.deviation ? "Actual" : "Deviation") +
                  (all.axis.empty() ? "" : " " + all.axis);
-  heading.text = heading.name + (all.turned ? " (nominal-actual)" : "");
+  heading.text = heading.name + (all.length   ? all.turned ? " (positive = short)" : " (positive = long)"
+                                 : all.turned ? " (nominal-actual)"
+                                              : "");
   heading.unit = all.unit;
   return heading;
 }
@@ -279,6 +285,52 @@ bool belong_together(const std::vector<RunColumn>& runs) {
   return !pos || back;  // "Pos" without its counterpart is a position
 }
 
+/// A heading of positions with an approach direction ("X Soll hin"), without the word for the direction; the
+/// direction is 0 for other headings.
+std::pair<int, sheet::Heading> position_of_direction(const sheet::Heading& heading) {
+  int sense = 0;
+  bool target = false;
+  std::string name;
+  for (const std::string& word : heading_words(heading.name)) {
+    const std::string small = text::in_small_letters(word);
+    if (says_relative(small)) {
+      if (sense != 0) return {0, heading};
+      sense = sense_said(small);
+      continue;
+    }
+    target |= says_target(small) ||
+              (word.size() == 1 && std::string_view("XYZABCUVW").find(word[0]) != std::string_view::npos);
+    name += (name.empty() ? "" : " ") + word;
+  }
+  if (!target || sense == 0) return {0, heading};
+  return {sense, {name, name, heading.unit, heading.unknown_unit}};
+}
+
+/// Positions of their own for each direction ("X Soll hin", "X Soll rück"): returns their columns by the
+/// direction, and leaves one of the two in `others`, with a heading for both. Empty: one column of positions.
+std::map<int, std::size_t> positions_by_direction(sheet::Sheet& sheet, sheet::SheetTable& table,
+                                                  std::vector<std::size_t>& others) {
+  std::map<int, std::size_t> found;
+  std::map<int, sheet::Heading> bare;
+  for (const std::size_t k : others) {
+    auto [sense, heading] = position_of_direction(table.headings[k]);
+    if (sense == 0) continue;
+    if (!found.emplace(sense, k).second)
+      throw text::InputError({sheet.file, sheet.line[table.heading_row]}, table.headings[k].text,
+                             "a second column of positions in this approach direction: write one table for "
+                             "each run");
+    bare.emplace(sense, std::move(heading));
+  }
+  if (found.size() != 2 || bare.at(1).name != bare.at(-1).name || bare.at(1).unit != bare.at(-1).unit)
+    return {};
+  sheet.notes.push_back(
+      fmt::format("the readings of each approach direction belong to its positions, \"{}\" and \"{}\"",
+                  table.headings[found.at(1)].text, table.headings[found.at(-1)].text));
+  table.headings[found.at(1)] = bare.at(1);
+  std::erase(others, found.at(-1));
+  return found;
+}
+
 }  // namespace
 
 std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
@@ -297,6 +349,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
     }
   }
   if (others.empty() || !belong_together(runs)) return 0;
+  const std::map<int, std::size_t> positions = positions_by_direction(sheet, table, others);
   number_runs(sheet, table, runs);
   note_decreasing_positions(sheet, table, runs, others.front());
   constexpr std::size_t kMostCells = 8u << 20;  // 64 MB of numbers
@@ -330,7 +383,10 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
     for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
       if (sheet.rows[row][one.column].empty()) continue;
       std::vector<std::string> cells;
-      for (const std::size_t k : others) cells.push_back(sheet.rows[row][k]);
+      for (const std::size_t k : others) {
+        const bool own = positions.contains(one.sense) && k == positions.at(1);
+        cells.push_back(sheet.rows[row][own ? positions.at(one.sense) : k]);
+      }
       if (directed) cells.push_back(std::to_string(one.sense));
       cells.push_back(one.run);
       cells.push_back(sheet.rows[row][one.column]);

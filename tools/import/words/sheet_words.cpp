@@ -93,6 +93,22 @@ bool says_correction(const std::string& word) {
                      [&](std::string_view start) { return word.starts_with(start); });
 }
 bool says_state_of_correction(const std::string& word) { return kStateOfCorrectionWords.contains(word); }
+bool says_magnitude(std::string_view heading) {
+  static const WordSet kWords = {
+      "betrag",      "betrags",           "beträge",    "betraege", "absolutbetrag",
+      "absolutwert", "absolutabweichung", "absolut",    "absolute", "absoluter",
+      "abs",         "magnitude",         "magnitudes", "unsigned", "vorzeichenlos"};
+  const std::size_t bar = heading.find('|');
+  if (bar != std::string_view::npos && heading.find('|', bar + 1) != std::string_view::npos) return true;
+  const std::vector<std::string> words = heading_words(text::in_small_letters(heading));
+  return std::any_of(words.begin(), words.end(), [](const auto& word) { return kWords.contains(word); });
+}
+bool says_magnitude_of_deviation(std::string_view title) {
+  const std::vector<std::string> words = heading_words(text::in_small_letters(title));
+  return says_magnitude(title) && std::any_of(words.begin(), words.end(), [](const std::string& word) {
+           return says_deviation(word) || word.ends_with("abweichungen") || word.ends_with("abweichung");
+         });
+}
 bool says_straightness(const std::string& word) { return kStraightnessWords.contains(word); }
 bool says_tilt(const std::string& word) { return kTiltWords.contains(word); }
 bool says_counting(const std::string& word) { return kCountingWords.contains(word); }

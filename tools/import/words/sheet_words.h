@@ -28,6 +28,10 @@ bool says_correction(const std::string& word);
 /// True for a word of "after the correction" or "without compensation". A column with a heading of this kind
 /// ("after the correction") does not contain a correction.
 bool says_state_of_correction(const std::string& word);
+/// True for a heading of values without a sign: "Betrag der Abweichung", "Absolute error", "|dX|".
+bool says_magnitude(std::string_view heading);
+/// True for a title with a word for a magnitude and a word for a deviation.
+bool says_magnitude_of_deviation(std::string_view title);
 /// An error perpendicular to the motion ("Geradheit") or a rotation during the motion ("Pitch"), if the
 /// heading does not state its direction.
 bool says_straightness(const std::string& word);

@@ -312,28 +312,23 @@ bool leads_from_nominal_to_actual(const std::vector<SignToken>& list) {
   return false;
 }
 
-/// "positiv, wenn Ist kleiner als Soll": a comparison that states the sign in words.
-bool compares_in_words(const std::vector<SignToken>& list, std::string_view text) {
-  static const WordSet kSizes = {"größer", "groesser", "kleiner", "greater", "larger", "smaller",
-                                 "less",   "above",    "below",   "bigger",  "over",   "under"};
-  bool positive = false, nominal = false, actual = false;
-  bool size = text.find_first_of("<>") != std::string_view::npos;
-  for (const SignToken& one : list) {
-    positive |= one.word.starts_with("positiv") || one.word == "plus";
-    size |= kSizes.contains(one.word);
-    const OperandRole role = role_of(one.word);
-    nominal |= role == OperandRole::kNominal;
-    actual |= role == OperandRole::kActual;
-  }
-  return positive && nominal && actual && size;
-}
-
-/// Words of a text about a size; "=", "+" and "-" are words too.
+/// Words of a text about a size; "=", "<", ">", "+" and "-" are words too.
 std::vector<std::string> words_about_size(std::string_view text) {
   std::string spaced;
-  for (const char c : text::in_small_letters(text))
-    spaced += c == '=' || c == ':' ? " = " : std::string(1, c);
-  std::vector<std::string> words = text::words_in(spaced, " \t_./;,()[]\"'");
+  char before = ' ';
+  for (const char c : text::in_small_letters(text)) {
+    if (c == '>' && (before == '-' || before == '=')) {
+      spaced += " to ";  // an arrow
+    } else if (c == '=' || c == ':') {
+      spaced += " = ";
+    } else if (c == '<' || c == '>') {
+      spaced += std::string(" ") + c + " ";
+    } else {
+      spaced += c;
+    }
+    before = c;
+  }
+  std::vector<std::string> words = text::words_in(spaced, " \t_./;,()[]\"'|");
   for (std::string& word : words)
     if (word == "\u2212" || word == "\u2013") word = "-";
   return words;
@@ -341,36 +336,158 @@ std::vector<std::string> words_about_size(std::string_view text) {
 
 /// The sign that a word states: 1 for positive, -1 for negative, 0 for other words.
 int sign_of_word(const std::string& word) {
-  if (word.starts_with("positiv") || word == "plus" || word == "+") return 1;
-  return word.starts_with("negativ") || word == "minus" || word == "-" ? -1 : 0;
+  if (word.starts_with("positiv") || word == "plus" || word == "pluszeichen" || word == "+") return 1;
+  return word.starts_with("negativ") || word == "minus" || word == "minuszeichen" || word == "-" ? -1 : 0;
+}
+
+/// Words between a sign and its meaning.
+bool says_meaning(const std::string& word) {
+  static const WordSet kWords = {"wenn", "falls", "bei", "bedeutet", "heißt", "heisst",
+                                 "if",   "when",  "for", "means",    "=",     "entspricht"};
+  return kWords.contains(word);
+}
+
+/// True for the word of a sign, and for "plus", "minus", "+" and "-" if the text states their meaning.
+bool states_sign(const std::vector<std::string>& words, std::size_t k) {
+  if (sign_of_word(words[k]) == 0) return false;
+  if (words[k].size() > 5) return true;
+  return (k + 1 < words.size() && says_meaning(words[k + 1])) || (k > 0 && says_meaning(words[k - 1]));
+}
+
+bool is_negated(const std::vector<std::string>& words) {
+  static const WordSet kWords = {"nicht", "not", "kein", "keine", "no", "isn't"};
+  return std::any_of(words.begin(), words.end(), [](const auto& word) { return kWords.contains(word); });
+}
+
+/// A text about corrections, whose sign is not the sign of the deviations.
+bool is_about_correction(const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(), says_correction) &&
+         std::none_of(words.begin(), words.end(), says_state_of_correction);
+}
+
+/// 1 for a word of a comparison such as "größer", -1 for "kleiner", 0 for other words.
+int comparison_of_word(const std::string& word) {
+  static const WordSet kMore = {"größer", "groesser", "grösser", "greater", "larger",   "above",  "bigger",
+                                "over",   "über",     "ueber",   "höher",   "oberhalb", "higher", ">"},
+                       kLess = {"kleiner", "smaller", "less",      "below", "under",
+                                "unter",   "lower",   "unterhalb", "<"};
+  return kMore.contains(word) ? 1 : kLess.contains(word) ? -1 : 0;
+}
+
+/// "positiv, wenn Ist kleiner als Soll": a comparison that states the sign in words. The sign is clear if the
+/// text has one sign and one comparison, and the comparison is between the two operands.
+SignSaid sign_of_comparison(std::string_view text, Travel travel) {
+  const std::vector<std::string> words = words_about_size(text);
+  int sign = 0, more = 0;
+  std::size_t signs = 0, comparisons = 0, nominals = 0, actuals = 0, at = 0, nominal = 0, actual = 0;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (states_sign(words, k)) {
+      ++signs;
+      sign = sign_of_word(words[k]);
+    } else if (const int found = comparison_of_word(words[k]); found != 0) {
+      ++comparisons;
+      more = found;
+      at = k;
+    } else if (const OperandRole role = role_of(words[k]); role == OperandRole::kNominal) {
+      ++nominals;
+      nominal = k;
+    } else if (role == OperandRole::kActual) {
+      ++actuals;
+      actual = k;
+    }
+  }
+  if (signs == 0 || comparisons == 0 || nominals == 0 || actuals == 0) return SignSaid::kNothing;
+  const bool between = (actual < at && at < nominal) || (nominal < at && at < actual);
+  const bool single = signs == 1 && comparisons == 1 && nominals == 1 && actuals == 1;
+  // Below zero "kleiner" may be about the amount.
+  if (!single || !between || travel != Travel::kPositive || is_negated(words) || is_about_correction(words))
+    return SignSaid::kUnclear;
+  const bool actual_more = (more > 0) == (actual < nominal);
+  return actual_more == (sign > 0) ? SignSaid::kActualLessNominal : SignSaid::kNominalLessActual;
+}
+
+/// True for a text about the sign that no rule reads: "Vorzeichen umgekehrt", "Korrektursinn", "positiv"
+/// beside words for sizes or for nominal and actual.
+bool mentions_sign(std::string_view text) {
+  static const WordSet kSizes = {"groß",    "gross",    "klein",   "kurz",    "lang",  "weit",
+                                 "short",   "long",     "far",     "large",   "small", "größer",
+                                 "kleiner", "groesser", "greater", "less",    "above", "below",
+                                 "over",    "under",    "größere", "kleinere"};
+  static const WordSet kDirections = {"direction", "directions", "approach", "sense"};
+  static const WordSet kEmpty = {"keine", "gelöscht", "none", "deleted", "leer", "null", "0", "zero"};
+  const std::vector<std::string> words = words_about_size(text);
+  bool correction = false, sign = false, state = false, linked = false, said = false, size = false;
+  bool nominal = false, actual = false, direction = false;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    const std::string& word = words[k];
+    if (word.starts_with("korrektursinn") || word.starts_with("korrekturvorzeichen")) return true;
+    sign |= word == "sign" || word == "signs" || word.starts_with("vorzeichen");
+    correction |= word.starts_with("korrekturwert");
+    state |= says_state_of_correction(word) || kEmpty.contains(word);
+    if (states_sign(words, k)) {
+      said = true;
+      linked |= k + 1 < words.size() && says_meaning(words[k + 1]);
+    }
+    size |= kSizes.contains(word);
+    direction |= kDirections.contains(word) || word.find("richtung") != std::string::npos;
+    if (is_instrument(word) || word == "messung" || word == "measurement") continue;
+    nominal |= role_of(word) == OperandRole::kNominal;
+    actual |= role_of(word) == OperandRole::kActual;
+  }
+  // "Vorzeichen" alone is the label of another cell.
+  if ((sign && words.size() > 1 && words != std::vector<std::string>{words[0], "="}) ||
+      (correction && !state))
+    return true;
+  if (direction || !said) return false;
+  return size || (nominal && actual) || (linked && (nominal || actual));
 }
 
 /// "positiv, wenn zu kurz": the sign of a deviation by the length that the machine travels. Too short means
-/// that the actual value is below the nominal one.
+/// that the actual value is below the nominal one, if the positions are positive.
 SignSaid sign_of_size(std::string_view text) {
   static const WordSet kShort = {"kurz", "kürzer", "short", "shorter", "undershoot"},
                        kLong = {"lang", "länger", "weit", "long", "longer", "far", "overshoot"},
-                       kLinks = {"wenn", "falls", "bei",   "bedeutet", "heißt",      "heisst", "if",
-                                 "when", "for",   "means", "=",        "entspricht", "zu",     "too"};
+                       kSmall = {"klein", "small"}, kLarge = {"groß", "gross", "grosz", "large", "big"},
+                       kMeasures = {"maß",    "mass",   "weg",       "verfahrweg", "strecke",
+                                    "travel", "istweg", "dimension", "distance",   "position"};
+  const auto is_too = [](const std::string& word) { return word == "zu" || word == "too"; };
   const std::vector<std::string> words = words_about_size(text);
-  const bool linked =
-      std::any_of(words.begin(), words.end(), [&](const std::string& word) { return kLinks.contains(word); });
+  const bool linked = std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+    return says_meaning(word) || is_too(word);
+  });
+  // "zu klein" is about the motion only beside a word for the motion or its actual value.
+  const bool measured = std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+    return kMeasures.contains(word) || role_of(word) == OperandRole::kActual;
+  });
+  const bool aside = is_negated(words) || is_about_correction(words);
   SignSaid said = SignSaid::kNothing;
   int before = 0;
   for (std::size_t k = 0; k < words.size(); ++k) {
     if (const int sign = sign_of_word(words[k]); sign != 0) before = sign;
-    if (!kShort.contains(words[k]) && !kLong.contains(words[k])) continue;
+    const bool too = k > 0 && is_too(words[k - 1]);
+    const bool small = kShort.contains(words[k]) || (too && kSmall.contains(words[k]));
+    const bool bare = too && (kSmall.contains(words[k]) || kLarge.contains(words[k]));
+    if (!small && !kLong.contains(words[k]) && !bare) continue;
     // "zu kurz = +" states the sign behind the size, "positiv, wenn zu kurz" before it.
-    int sign = k + 2 < words.size() && kLinks.contains(words[k + 1]) ? sign_of_word(words[k + 2]) : 0;
+    int sign = k + 2 < words.size() && (says_meaning(words[k + 1]) || is_too(words[k + 1]))
+                   ? sign_of_word(words[k + 2])
+                   : 0;
     if (sign == 0) sign = before;
     for (std::size_t next = k + 1; sign == 0 && next < words.size(); ++next) sign = sign_of_word(words[next]);
     if (sign == 0) continue;
-    const bool turned = kShort.contains(words[k]) == (sign > 0);
-    said = both_signs(said, !linked  ? SignSaid::kUnclear
-                            : turned ? SignSaid::kNominalLessActual
-                                     : SignSaid::kActualLessNominal);
+    const bool turned = small == (sign > 0);
+    said = both_signs(said, !linked || aside || (bare && !measured) ? SignSaid::kUnclear
+                            : turned                                ? SignSaid::kNominalLessActual
+                                                                    : SignSaid::kActualLessNominal);
   }
   return said;
+}
+
+/// The sign of a text about a length, for positions on this side of zero.
+SignSaid on_side(SignSaid said, Travel travel) {
+  if (said == SignSaid::kNothing || said == SignSaid::kUnclear || travel == Travel::kPositive) return said;
+  if (travel == Travel::kBothSides) return SignSaid::kUnclear;
+  return said == SignSaid::kNominalLessActual ? SignSaid::kActualLessNominal : SignSaid::kNominalLessActual;
 }
 
 }  // namespace
@@ -380,14 +497,18 @@ SignSaid both_signs(SignSaid one, SignSaid other) {
   return other == SignSaid::kNothing || other == one ? one : SignSaid::kUnclear;
 }
 
-SignSaid sign_said(std::string_view text, SignPlace place) {
+SignSaid sign_said(std::string_view text, SignPlace place, Travel travel) {
   const SignTokens tokens(text);
-  const bool in_words = leads_from_nominal_to_actual(tokens.list()) || compares_in_words(tokens.list(), text);
-  SignSaid said = in_words ? SignSaid::kUnclear : SignSaid::kNothing;
+  SignSaid said =
+      leads_from_nominal_to_actual(tokens.list()) ? SignSaid::kUnclear : sign_of_comparison(text, travel);
   for (std::size_t k = 0; k < tokens.list().size(); ++k)
     if (tokens.list()[k].kind == SignKind::kMinus)
       said = both_signs(said, Difference(tokens.list(), k, place).said());
-  return both_signs(said, sign_of_size(text));
+  said = both_signs(said, on_side(sign_of_size(text), travel));
+  if (said != SignSaid::kNothing || !mentions_sign(text)) return said;
+  const bool deviation = std::any_of(tokens.list().begin(), tokens.list().end(),
+                                     [](const SignToken& one) { return says_deviation(one.word); });
+  return place == SignPlace::kTitle || deviation ? SignSaid::kUnclear : SignSaid::kNothing;
 }
 
 }  // namespace vernier::importer
