@@ -206,7 +206,7 @@ TEST(FinePeriods, BesideALeadErrorAndAReversalErrorAreFound) {
     std::set<std::string> effects;
     for (const LadderStep& step : answer.ladder) effects.insert(step.effect);
     const bool period = std::any_of(answer.candidates.begin(), answer.candidates.end(), [](const auto& one) {
-      return one.accepted && one.candidate.choice.effect->id == "cyclic-error" &&
+      return one.accepted && one.add.starts_with("cyclic-error") &&
              std::any_of(one.parameters.begin(), one.parameters.end(), [](const ParameterEstimate& p) {
                return p.name.ends_with("_p") && std::abs(p.value - 10) < 0.05;
              });
