@@ -273,18 +273,17 @@ bool Finder::is_of_axis_alone(std::size_t item, std::size_t axis) const {
 
 std::optional<std::size_t> Finder::most_usual(std::size_t beside, bool of_direction) const {
   const effects::Choice& choice = pool_.candidate(beside).choice;
+  std::set<std::pair<int, std::size_t>> wanted;
+  if (of_direction) wanted.insert({static_cast<int>(model::SymbolKind::kDirection), *choice.axis});
   std::optional<std::size_t> best;
   for (const std::size_t item : entry_item_) {
+    const effects::Candidate& candidate = pool_.candidate(item);
     if (pool_[item].columns.cols() != 1 || !pool_[item].scored.scanned.empty() ||
-        !is_of_axis_alone(item, *choice.axis) || pool_.candidate(item).choice.place != choice.place)
+        candidate.terms.size() != 1 || candidate.choice.axis != choice.axis ||
+        candidate.choice.place != choice.place)
       continue;
-    const auto drivers = drivers_of(evidence_.machine(), pool_.candidate(item));
-    const bool fits = of_direction ? drivers ==
-                                         std::set<std::pair<int, std::size_t>>{
-                                             {static_cast<int>(model::SymbolKind::kDirection), *choice.axis}}
-                                   : drivers.empty();
-    if (fits && (!best || pool_.penalty(pool_[item].scored) < pool_.penalty(pool_[*best].scored)))
-      best = item;
+    if (best && pool_.penalty(pool_[item].scored) >= pool_.penalty(pool_[*best].scored)) continue;
+    if (drivers_of(evidence_.machine(), candidate) == wanted) best = item;
   }
   return best;
 }

@@ -143,8 +143,8 @@ class Finder {
   /// its travel since a reversal or the number of rows.
   bool is_of_axis_alone(std::size_t item, std::size_t axis) const;
   /// Returns the candidate of one coefficient with the smallest penalty that depends on the axis of `beside`,
-  /// at the same location: on its position only or, if `of_direction`, on its approach direction only;
-  /// nullopt if there is none.
+  /// at the same location: on its position only or, if `of_direction`, on its approach direction only. The
+  /// result has no value if the pool has no such candidate.
   std::optional<std::size_t> most_usual(std::size_t beside, bool of_direction) const;
   /// Reduces the weight of readings whose errors are correlated at one pose, in a run or in time.
   void weigh_correlation();

@@ -7,28 +7,16 @@
 
 #include <string>
 
+#include "tests/unit/import/table_reading.h"
 #include "tools/import/tables/sheet_import.h"
-#include "tools/text/error.h"
 
 namespace vernier::sheet_shape_test {
 
 using namespace vernier::importer;
 using testing::HasSubstr;
 using testing::Not;
+using vernier::importer_test::read;
 namespace {
-
-/// The measurement file of a table and its notes, or the refusal.
-std::string read(const std::string& bytes, const SheetWords& words = {}) {
-  try {
-    const SheetReading reading = read_as_sheet(bytes, "s.csv", words);
-    std::string text =
-        measurement_csv(table_of_sheet(reading.sheet, reading.table, reading.columns, reading.wishes));
-    for (const std::string& note : reading.sheet.notes) text += "note: " + note + "\n";
-    return text;
-  } catch (const text::InputError& error) {
-    return std::string("refused: ") + error.what();
-  }
-}
 
 TEST(SheetShape, SignsOfAMeanAreComputedRowsAlsoInAColumnThatIsLeftOut) {
   SheetWords leave;
