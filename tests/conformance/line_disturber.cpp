@@ -117,8 +117,14 @@ void LineDisturber::answer(const Frame& request, Frame frame) {
     case Fault::kCutAnswers:
       if (every_second()) frame.resize(random_() % frame.size());
       break;
-    case Fault::kTwice:
-      send(frame);
+    case Fault::kTwice: {
+      // In one write: between two, a busy computer lets the client ask again.
+      const Frame once = frame;
+      frame.insert(frame.end(), once.begin(), once.end());
+      break;
+    }
+    case Fault::kAgain:
+      late_.emplace_back(Clock::now() + std::chrono::milliseconds(ms), frame);
       break;
     case Fault::kOwnEcho:
       frame.insert(frame.begin(), request.begin(), request.end());
@@ -139,6 +145,9 @@ void LineDisturber::pass(Frame request) {
     return;
   }
   if (now == Fault::kBitsOfRequests && every_second()) turn_a_bit(request);
+  // What the server answered too late to an earlier request is no answer to this one.
+  while (has_input(server_, 0ms) && !read_frame(server_, answer_size, 0ms).empty()) {
+  }
   static_cast<void>(::write(server_, request.data(), request.size()) > 0);
   const Frame frame = read_frame(server_, answer_size, 50ms);
   if (frame.size() < 5) return;

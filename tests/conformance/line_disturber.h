@@ -32,7 +32,8 @@ class LineDisturber {
     kLate,            // every answer comes after `ms`
     kGarbage,         // bytes without sense before every second answer
     kCutAnswers,      // every second answer has no end
-    kTwice,           // every answer comes twice
+    kTwice,           // every answer comes twice, without a pause
+    kAgain,           // every answer comes again after `ms`
     kOwnEcho,         // a transceiver that hears itself: each request comes back before its answer
   };
 
