@@ -3,8 +3,8 @@
 """Do the tests of `comp` and `tables`, or of `firmware/core`, find a change of one operator, constant or limit?
 
 Each mutant is one change of one place, drawn with a seed; the changed file is compiled, linked with the tests of
-the rooms, and the tests run. A mutant is killed if it does not compile, a test fails, or the tests take ten times
-as long. Prints every survivor with its line, and the share that was killed; exit status 1 below --least.
+the rooms, and the tests run. A mutant is killed if a test fails, if the sanitizer of undefined behaviour stops it, or
+if the tests take ten times as long; one that does not compile is not counted. Prints every survivor with its line, and the share that was killed; exit status 1 below --least.
     mutants.py [--rooms firmware] [--count N] [--seed SEED] [--file PART_OF_A_NAME] [--least PERCENT]
 """
 import argparse, os, random, re, shutil, subprocess, sys, tempfile, time
@@ -100,9 +100,10 @@ def mutated(place):
 
 class Bench:
     def __init__(self, build, rooms):
-        self.build, self.flags, self.libraries = build, ["-O1", "-w", *rooms.flags], rooms.libraries
+        flags = ["-O1", "-w", *rooms.flags]
+        self.build, self.flags, self.libraries = build, flags + rooms.flags_of_rooms, rooms.libraries
         self.rooms = dict(zip(rooms.sources, compile_all("c++", rooms.sources, os.path.join(build, "rooms"), self.flags)))
-        self.tests = compile_all("c++", rooms.tests, os.path.join(build, "tests"), self.flags)
+        self.tests = compile_all("c++", rooms.tests, os.path.join(build, "tests"), flags)
         self.first = ["*"]
         begun = time.monotonic()
         if not self.passes(self.rooms.values(), None):

@@ -5,6 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 GTEST = ["-lgtest", "-lgtest_main"]
+# These tests run under sanitizers as well (the preset debug). An index beyond an array, a shift or an overflow then ends the program.
+BOUNDS = ["-fsanitize=undefined", "-fsanitize-undefined-trap-on-error", "-fno-sanitize=null,alignment,object-size,vptr"]
 
 
 def units(folders, left_out, ending=".cpp"):
@@ -24,7 +26,7 @@ class CompAndTables:
     def __init__(self, _):
         self.sources = units(["comp", "comp/probing", "comp/vibration", "tables"], ("image_view", "codes"))
         self.tests = units(["tests/unit/comp", "tests/unit/tables"], ("golden", "image_test"), "_test.cpp")
-        self.flags, self.libraries = [], GTEST
+        self.flags, self.libraries, self.flags_of_rooms = [], GTEST, BOUNDS
 
 
 class FirmwareCore:
@@ -37,6 +39,7 @@ class FirmwareCore:
         self.sources = units(["firmware/core", "firmware/core/cycle", "firmware/core/link"], ("signature", "printed_model"))
         self.tests = units(["tests/unit/firmware"], ("daemon_board", "vernierd", "hostile_clients", "no_allocation", "calibration"), "_test.cpp")
         self.tests += ["tests/unit/tables/" + name for name in ("golden_link_test.cpp", "golden_listing.cpp", "golden_machine.cpp")]
+        self.flags_of_rooms = BOUNDS
         self.flags = [f'-DVERNIER_SOURCE_DIR="{ROOT}"', f'-DVERNIER_BIN_DIR="{tree}/bin"']
         run(["cmake", "--build", tree, "--target", "firmware_test"])
         link = shlex.split(run(["ninja", "-C", tree, "-t", "commands", "firmware_test"]).strip().split("\n")[-1])

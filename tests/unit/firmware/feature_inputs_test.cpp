@@ -266,6 +266,14 @@ TEST(FeatureInputs, RefuseWhatCannotBeServed) {
   EXPECT_TRUE(refused({.input = 2, .of = 0, .lsb = InputMicro((std::int64_t{1} << 30) + 1)}));
   EXPECT_TRUE(refused({.input = 2, .of = 3})) << "of an input beyond the board";
   EXPECT_EQ(FeatureInputs(source, 3, {good}, TimeUs(0)).refused(), 0u) << "no tick";
+  EXPECT_EQ(FeatureInputs(source, 3, {good}, TimeUs(1)).refused(), kNoInput) << "the shortest tick";
+  // A displacement has a scale of its own; its samples are multiples of lsb as well.
+  const auto displacement = [&](std::int64_t lsb) {
+    return refused({.input = 2, .of = 0, .lsb = InputMicro(lsb), .corner_mHz = 500, .lsb_nm_s2 = 98'000});
+  };
+  EXPECT_FALSE(displacement(std::int64_t{1} << 30));
+  EXPECT_TRUE(displacement((std::int64_t{1} << 30) + 1));
+  EXPECT_TRUE(displacement(0));
   // The first request that cannot be served is named.
   EXPECT_EQ(FeatureInputs(source, 3, {{.input = 1, .of = 1}, {.input = 2, .of = 2}}, TimeUs(1000)).refused(),
             0u);
