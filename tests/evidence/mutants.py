@@ -63,6 +63,12 @@ EQUIVALENT = [
     ("term = {0, 0, 20};", ("0", "1"), "the time of a product does not depend on its registers"),
     ("written && at < image_bytes", ("<", "<="), "one write of no bytes"),
     ("std::uint32_t i = 0; i < kMaxAxes; ++i) axis[i] = i", ("0", "1"), "the first is 0 already"),
+    ("int pass = 0; pass < 2; ++pass", ("<", "<="), "a pass more finds a value below the prime"),
+    ("int pass = 0; pass < 2; ++pass", ("2", "3"), "a pass more finds a value below the prime"),
+    ("state.weight[k] <= kFullWeight.count", ("<=", "<"), "the full weight is that of the exchange before the start"),
+    ("return narrow(value < 0 ? -quotient", ("<", "<="), "zero is its own opposite"),
+    ("if (size > 0) std::memcpy(bytes_ + used_", (">", ">="), "a copy of no bytes"),
+    ("w[i] = 0;", ("0", "1"), "the eight bytes after it shift the one out"),
     ("kTravelGuard = 14", ("14", "15"), "one guard bit more: the widest value stays below 2^63"),
 ]
 

@@ -6,7 +6,8 @@ from concurrent.futures import ThreadPoolExecutor
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 GTEST = ["-lgtest", "-lgtest_main"]
 # These tests run under sanitizers as well (the preset debug). An index beyond an array, a shift or an overflow then ends the program.
-BOUNDS = ["-fsanitize=undefined", "-fsanitize-undefined-trap-on-error", "-fno-sanitize=null,alignment,object-size,vptr"]
+BOUNDS = ["-fsanitize=undefined", "-fsanitize-undefined-trap-on-error", "-fno-sanitize=null,alignment,object-size,vptr",
+          "-D_GLIBCXX_ASSERTIONS"]
 
 
 def units(folders, left_out, ending=".cpp"):

@@ -186,6 +186,19 @@ TEST(Cycle, ShortSilenceIsCountedAndTolerated) {
   EXPECT_EQ(rig.cycle().health().missing_inputs, 90u);
 }
 
+// A tick counts towards readiness if every axis has been read once, although so short a silence is no fault.
+TEST(Cycle, AxisThatIsSilentAtFirstIsCheckedForAsLongAsTheOthers) {
+  const auto ticks_to_ready = [](std::int64_t silent) {
+    PlantOptions options;
+    if (silent > 0) options.faults = {{PlantFaultKind::kMissingPosition, 1, 0, silent}};
+    Rig rig(options);
+    EXPECT_TRUE(rig.run_to(Mode::kReady));
+    EXPECT_EQ(rig.cycle().health().faults, 0u);
+    return rig.cycle().health().ticks;
+  };
+  EXPECT_EQ(ticks_to_ready(2), ticks_to_ready(0) + 2);
+}
+
 TEST(Cycle, SilentSensorFromTheStartKeepsItChecking) {
   PlantOptions options;
   options.faults = {{PlantFaultKind::kSensorLost, 0, 0, 100000}};
@@ -318,18 +331,23 @@ TEST(Cycle, BoardsOwnLimitHoldsAndIsTold) {
 TEST(Cycle, EachSaturatedTickIsCountedOnce) {
   Rig rig({}, board_lets_10_um_out());
   ASSERT_TRUE(rig.run_to(Mode::kActive));
-  const std::uint64_t before = rig.cycle().health().saturated;
-  std::uint64_t saturated = 0, by_image = 0, by_board = 0;
+  const Health before = rig.cycle().health();
+  std::uint64_t saturated = 0, by_image = 0, by_board = 0, slewing = 0, beyond = 0;
   for (int i = 0; i < 20'000; ++i) {
     const TickReport report = rig.tick();
     const bool image = (report.output.flags & kSaturated) != 0,
                board = (rig.cycle().limits(0) & kAtBoardLimit) != 0;
     saturated += image || board ? 1 : 0;
+    slewing += (report.output.flags & kSlewing) != 0 ? 1 : 0;
+    beyond += (report.output.flags & kBeyondRange) != 0 ? 1 : 0;
     by_image += image ? 1 : 0, by_board += board && !image ? 1 : 0;
   }
   EXPECT_GT(by_image, 0u) << "beyond 30 um";
   EXPECT_GT(by_board, 0u) << "between 10 and 30 um";
-  EXPECT_EQ(rig.cycle().health().saturated - before, saturated);
+  EXPECT_EQ(rig.cycle().health().saturated - before.saturated, saturated);
+  EXPECT_EQ(rig.cycle().health().slewing - before.slewing, slewing);
+  EXPECT_EQ(rig.cycle().health().beyond_range - before.beyond_range, beyond);
+  EXPECT_LT(beyond, 20'000u);
 }
 
 // With a limit of 0 every correction is at its limit, but no correction is not.

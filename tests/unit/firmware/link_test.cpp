@@ -749,6 +749,8 @@ TEST_F(LinkTest, EachFieldOfATouchArrivesInItsPlace) {
   for (int i = 0; i < 3; ++i) touch.workpiece_nm[i] = 21 + i;
   touch.lost_edges = 31, touch.lost_touches = 32, touch.spikes = 33, touch.missing = 34;
   touch.kind = 1, touch.fault = 2, touch.flags = 3, touch.bounces = 4;
+  touch.position[0] = 41, touch.position[1] = 42, touch.compensated[0] = 51, touch.compensated[1] = 52;
+  touch.uncertainty[1] = std::int64_t{UINT32_MAX} + 1;
   exchange.touches.add(touch);
   std::uint8_t request[kRequestHeaderBytes + 8] = {static_cast<std::uint8_t>(LinkOp::kTouches), 1},
                                              reply[kMaxReplyBytes];
@@ -766,6 +768,14 @@ TEST_F(LinkTest, EachFieldOfATouchArrivesInItsPlace) {
   EXPECT_EQ(got.fault, 2);
   EXPECT_EQ(got.flags, 3);
   EXPECT_EQ(got.bounces, 4);
+  LinkTouchAxis axes[2];
+  std::memcpy(axes, reply + kReplyHeaderBytes + 10 + sizeof(got), sizeof(axes));
+  EXPECT_EQ(std::int64_t{axes[0].position}, 41);
+  EXPECT_EQ(std::int64_t{axes[1].position}, 42);
+  EXPECT_EQ(std::int64_t{axes[0].compensated}, 51);
+  EXPECT_EQ(std::int64_t{axes[1].compensated}, 52);
+  EXPECT_EQ(std::uint32_t{axes[0].uncertainty}, 0u);
+  EXPECT_EQ(std::uint32_t{axes[1].uncertainty}, UINT32_MAX) << "the most that the field holds";
 }
 
 std::uint64_t from_environment(const char* name, std::uint64_t value) {

@@ -122,6 +122,18 @@ TEST_F(BesideStore, OnlyASettingThatActsIsAnsweredLater) {
   EXPECT_EQ(ask(weight_of(0)), std::nullopt);
 }
 
+TEST_F(BesideStore, ReplyToASettingRepeatsOperationAndSequence) {
+  const auto weight = static_cast<std::uint8_t>(LinkOp::kWeight);
+  ASSERT_EQ(ask({weight, 77, 0, 0, 0, 0, 0}), std::nullopt);
+  ticket_ = link_.handler->ticket();
+  run(3);
+  EXPECT_TRUE(service_->look_after_store());
+  ASSERT_NE(later(), CommandHandler::kLater);
+  EXPECT_EQ(reply_[0], weight);
+  EXPECT_EQ(reply_[1], 77);
+  EXPECT_EQ(static_cast<LinkStatus>(reply_[2]), LinkStatus::kDone);
+}
+
 TEST_F(BesideStore, HalfARequestHasNoReply) {
   for (const LinkOp op : {LinkOp::kHello, LinkOp::kCommand, LinkOp::kIdentify, LinkOp::kSigned}) {
     const auto code = static_cast<std::uint8_t>(op);
@@ -317,6 +329,54 @@ TEST(ServiceState, IsThatOfTheAxesOfTheBoardOnly) {
     EXPECT_EQ(state.axis_weight[axis], kFullWeight.count);
   }
   for (std::uint32_t axis = 2; axis < kMaxAxes; ++axis) EXPECT_EQ(state.axis_weight[axis], 0) << "no axis";
+}
+
+// Each table of the board is full: an index beyond an array ends this test under the sanitizers.
+TEST(ServiceState, BoardOfTheMostAxesAndInputsTicks) {
+  ServiceOptions options;
+  std::vector<RoamingAxis> ranges;
+  std::vector<InputMicro> values;
+  for (std::size_t i = 0; i < kMaxAxes; ++i) {
+    options.wiring.axes.push_back({("A" + std::to_string(i)).c_str()});
+    ranges.push_back({0, 200'000'000});
+  }
+  for (std::size_t i = 0; i < kMaxInputs; ++i) {
+    options.wiring.inputs.push_back(("T" + std::to_string(i)).c_str());
+    values.emplace_back(21'000'000);
+  }
+  PatternClock clock;
+  Roaming motion(ranges, values, TimeUs(1000), 0.1, 1);
+  SimPlant plant(motion, kMaxAxes, kMaxInputs, {});
+  SimSlotStore store(1 << 16);
+  Service service(options, Board{clock, plant, plant, plant}, store);
+  service.boot();
+  for (int i = 0; i < 10; ++i) plant.advance(), service.tick();
+  StateRecord state;
+  ASSERT_TRUE(service.exchange().state.read(state));
+  for (std::uint32_t axis = 0; axis < kMaxAxes; ++axis)
+    EXPECT_EQ(state.axis_weight[axis], kFullWeight.count) << axis;
+  EXPECT_EQ(service.cycle().health().ticks, 10u);
+}
+
+TEST(ServiceState, TickNamesTheAxesThatAreAtALimit) {
+  const SigningKey key = new_key();
+  SimSlotStore store(1 << 16);
+  UploadRig rig(store, key);
+  rig.send(make_upload(small_image_bytes(2e-4), key, 5, 0));
+  int held = 0, free = 0;
+  for (int i = 0; i < 8000; ++i) {
+    rig.run(1);
+    TickRecord record;
+    ASSERT_TRUE(rig.service().exchange().ticks.read(rig.service().exchange().ticks.count() - 1, record));
+    for (std::uint32_t axis = 0; axis < 2; ++axis) {
+      constexpr auto kLimits = kAtImageLimit | kAtBoardLimit | kAtOutputLimit;
+      const bool at_limit = (rig.service().cycle().limits(axis) & kLimits) != 0;
+      ASSERT_EQ((record.saturated >> axis & 1) != 0, at_limit) << "axis " << axis << ", tick " << i;
+      ++(at_limit ? held : free);
+    }
+  }
+  EXPECT_GT(held, 0);
+  EXPECT_GT(free, 0);
 }
 
 }  // namespace
