@@ -68,6 +68,7 @@ EQUIVALENT = [
     ("state.weight[k] <= kFullWeight.count", ("<=", "<"), "the full weight is that of the exchange before the start"),
     ("return narrow(value < 0 ? -quotient", ("<", "<="), "zero is its own opposite"),
     ("if (size > 0) std::memcpy(bytes_ + used_", (">", ">="), "a copy of no bytes"),
+    ("12 * (root + bit) * (root + bit) <= twelve_times", ("<=", "<"), "a root that is exact is one too small then, and rounded up in the next line"),
     ("w[i] = 0;", ("0", "1"), "the eight bytes after it shift the one out"),
     ("kTravelGuard = 14", ("14", "15"), "one guard bit more: the widest value stays below 2^63"),
 ]

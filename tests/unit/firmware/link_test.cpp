@@ -550,6 +550,8 @@ TEST_F(LinkTest, LiveRegistersSayWhatTheTickSays) {
   EXPECT_EQ(pair(kLiveAxes), tick.position[0] / 1000);
   EXPECT_EQ(pair(kLiveAxes + 2), tick.correction[0] / 10);
   EXPECT_EQ(pair(kLiveInputs), tick.input[0] / 1000);
+  for (int axis = 0; axis < 2; ++axis) EXPECT_EQ(registers[kLiveAxisWeights + axis], 10'000) << axis;
+  EXPECT_EQ(registers[kLiveAxisWeights + 2], 0) << "no third axis";
 }
 
 TEST_F(LinkTest, LiveRegistersOfTheFirstTickAndOfABoardWithoutAnImage) {
@@ -599,6 +601,13 @@ LinkStatus status_of(Link& link, LinkOp op, const std::vector<std::uint8_t>& pay
   return static_cast<LinkStatus>(reply[2]);
 }
 
+TEST_F(LinkTest, CountersBeginWithAnyThatIsThere) {
+  rig_.run(10);
+  constexpr std::uint8_t kCounters = sizeof(HealthRecord) / sizeof(std::uint64_t);
+  EXPECT_EQ(status_of(link_, LinkOp::kHealth, {kCounters - 1}), LinkStatus::kDone);
+  EXPECT_EQ(status_of(link_, LinkOp::kHealth, {kCounters}), LinkStatus::kBadValue);
+}
+
 TEST_F(LinkTest, BeforeTheFirstTickThereIsNoState) {
   for (const LinkOp op : {LinkOp::kTick, LinkOp::kState}) {
     UploadRig blank(store_, key_);
@@ -633,6 +642,8 @@ TEST_F(LinkTest, LiveRegistersOfARotaryAxisAreThousandthsOfADegree) {
   exchange.ticks.add(tick);
   HealthRecord health;
   ASSERT_TRUE(exchange.health.read(health));
+  health.latency_ns[1] = 12'345'678;
+  exchange.health.publish(health);
   std::uint16_t registers[kLiveRegisters];
   link.fill_registers(registers);
   const auto pair = [&](int at) {
@@ -642,7 +653,7 @@ TEST_F(LinkTest, LiveRegistersOfARotaryAxisAreThousandthsOfADegree) {
   EXPECT_EQ(pair(kLiveAxes + kLiveRegistersPerAxis), 810'000);
   EXPECT_EQ(pair(kLiveAxes + kLiveRegistersPerAxis + 2), -90'000'000);
   EXPECT_EQ(pair(kLiveAxes + 2 * kLiveRegistersPerAxis), 0) << "no third axis";
-  EXPECT_EQ(registers[kLiveLatency], health.latency_ns[1] / 1000);
+  EXPECT_EQ(registers[kLiveLatency], 12'345) << "us";
 }
 
 // The tick may be interrupted at any point. A link then shows no state, and never half of a state.
