@@ -393,15 +393,23 @@ class ShortPlant : public SimPlant {
 
 TEST(Cycle, EndOfAnOutputIsToldAndAchievedIsWhatItGives) {
   const auto image = small_image();
-  Roaming motion({{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(20'000'000)}, TimeUs(1000), 0.1, 1);
+  Roaming motion({{0, 200'000'000}, {0, 200'000'000}}, {InputMicro(20'000'000)}, TimeUs(1000), 0.1, 1);
   SimClock clock;
   ShortPlant plant(motion, 2, 1, PlantOptions{});
   Cycle cycle(image->view, Board{clock, plant, plant, plant});
   plant.release();
+  int free = 0;
   for (int i = 0; i < 4000; ++i) {
     plant.advance();
-    cycle.tick(TimeUs(1000 * i), cycle.mode() == Mode::kReady ? Command::kActivate : Command::kNone);
+    const std::uint64_t before = cycle.health().saturated;
+    const TickReport report =
+        cycle.tick(TimeUs(1000 * i), cycle.mode() == Mode::kReady ? Command::kActivate : Command::kNone);
+    const bool held = (report.output.flags & kSaturated) != 0 ||
+                      ((cycle.limits(0) | cycle.limits(1)) & (kAtBoardLimit | kAtOutputLimit)) != 0;
+    ASSERT_EQ(cycle.health().saturated - before, held ? 1u : 0u) << "tick " << i;
+    free += held ? 0 : 1;
   }
+  EXPECT_GT(free, 0) << "before it is active";
   ASSERT_EQ(cycle.mode(), Mode::kActive);
   EXPECT_GT(std::abs(cycle.written(0).count), 5000);
   EXPECT_EQ(std::abs(cycle.achieved(0).count), 5000);
