@@ -9,6 +9,7 @@
 
 #include "tools/diagnose/causes.h"
 #include "tools/diagnose/copies.h"
+#include "tools/diagnose/course.h"
 #include "tools/diagnose/finder.h"
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/pieces.h"
@@ -86,7 +87,7 @@ class Diagnoser {
     const Evidence& evidence = finder_.evidence();
     std::vector<std::size_t> doubtful = pieces_of_one_function(evidence, pool_, items);
     for (const std::size_t item : items)
-      if (!doubt_of_shape(evidence, pool_, items, item).empty()) doubtful.push_back(item);
+      if (!doubt_of(evidence, pool_, items, item).empty()) doubtful.push_back(item);
     if (!doubtful.empty())
       std::stable_partition(items.begin(), items.end(),
                             [&](std::size_t item) { return stands_beside(evidence, pool_, item, doubtful); });

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "tools/diagnose/course.h"
 #include "tools/diagnose/day.h"
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/pieces.h"
@@ -179,7 +180,10 @@ class Decision {
                                        [&](std::size_t item) { return quick || can_follow_a_drift(item); });
     if (doubtful == accepted_.end()) return {};
     const double square = mean_square_beside_steps(quick);
-    if (square <= limits_.doubtful_uncertainty) return {};
+    // Effects that explain less than the drift leaves may be a part of the same unknown error.
+    const double explained =
+        answer_.ladder.front().chi_square_per_freedom - answer_.ladder.back().chi_square_per_freedom;
+    if (square <= limits_.doubtful_uncertainty && square - 1 <= explained) return {};
     return fmt::format(
         "An error that changes {} remains, and u does not state this error: the residual of the readings is "
         "{:.2g} u (noise model: {}). Either the instrument drifts, or an error of the machine depends on no "
@@ -237,8 +241,7 @@ class Decision {
     std::vector<std::size_t> doubtful;
     std::string why;  // of the first one
     for (const std::size_t item : accepted_)
-      if (const std::string doubt = doubt_of_shape(finder_.evidence(), pool_, accepted_, item);
-          !doubt.empty()) {
+      if (const std::string doubt = doubt_of(finder_.evidence(), pool_, accepted_, item); !doubt.empty()) {
         if (doubtful.empty()) why = doubt;
         doubtful.push_back(item);
       }

@@ -127,12 +127,13 @@ TEST(Gate, ANameBesideADriftThatUDoesNotStateIsACandidateOnly) {
   const auto answer_of = [&](double unlogged, double plausible) {
     DiagnoseOptions options;
     options.thresholds.verdict.doubtful_uncertainty = plausible;
+    options.thresholds.shape.course_share = 1;  // the rule of another course would withdraw it, too
     return diagnose::diagnose(kAxis, machine, parse_measurement(warm_survey(4, unlogged), "m.csv", machine),
                               options);
   };
   const double plausible = VerdictThresholds().doubtful_uncertainty;
 
-  const Diagnosis alone = answer_of(0, plausible), beside = answer_of(5, plausible);
+  const Diagnosis alone = answer_of(0, plausible), beside = answer_of(3, plausible);
 
   EXPECT_EQ(alone.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << alone.explanation;
   ASSERT_GT(beside.noise.drift, 0) << beside.explanation;
@@ -140,8 +141,10 @@ TEST(Gate, ANameBesideADriftThatUDoesNotStateIsACandidateOnly) {
   EXPECT_EQ(beside.verdict, Verdict::kUnexplained) << "seed " << kSeed << ": " << beside.explanation;
   EXPECT_NE(beside.explanation.find("No cause is named"), std::string::npos) << beside.explanation;
   EXPECT_TRUE(beside.causes.empty());
-  // If u may be three times too small, the name stands: the rule alone withdraws it.
-  EXPECT_EQ(answer_of(5, 9).verdict, Verdict::kMissingEffect);
+  // If u may be three times too small, the name stands: the rule alone withdraws it. But a name that explains
+  // less than the drift leaves does not stand.
+  EXPECT_EQ(answer_of(3, 9).verdict, Verdict::kMissingEffect);
+  EXPECT_EQ(answer_of(5, 9).verdict, Verdict::kUnexplained);
 }
 
 TEST(Gate, AnotherResponseIsNotRejectedIfItFitsAndPredictsBetter) {

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A name states on what an error depends. These errors depend on another quantity, which no column records.
+#include "tools/diagnose/course.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tools/diagnose/diagnosis.h"
+#include "tools/model/machine_reader.h"
+
+namespace vernier::course_test {
+
+using namespace vernier::diagnose;
+using namespace vernier::model;
+namespace {
+
+constexpr std::uint64_t kSeed = 281130;
+
+const char* const kTable = R"(<machine name="m"><variables><static><BaseShift X="0" Y="0"/></static>
+  <machineaxes><X rotary="false" min="0" max="500"/><Y rotary="false" min="0" max="400"/></machineaxes>
+  </variables><transforms branch="tool"><sixdof n="1" Y="Y"/><sixdof n="2" X="X"/></transforms></machine>)";
+
+/// Poses in a random order, in four runs. The moves have lengths between nothing and the whole travel.
+struct Poses {
+  Eigen::ArrayXd x = Eigen::ArrayXd::Zero(kRows), y = x, time = x;
+  static constexpr int kRows = 240, kOfRun = 60;
+
+  Poses() {
+    std::mt19937_64 random(kSeed);
+    std::uniform_real_distribution<double> part(0, 1);
+    for (int i = 0; i < kRows; ++i) {
+      x[i] = std::round(500 * part(random));
+      y[i] = std::round(400 * part(random));
+      time[i] = i == 0 ? 0 : time[i - 1] + 20 + (i % kOfRun == 0 ? 1800 : 0);
+    }
+  }
+  double move_x(int i) const { return i % kOfRun == 0 ? 0 : x[i] - x[i - 1]; }
+  double move_y(int i) const { return i % kOfRun == 0 ? 0 : y[i] - y[i - 1]; }
+  /// +1 or -1: the sense of the last move, of this row or an earlier one.
+  int sense(const Eigen::ArrayXd& at, int i) const {
+    for (; i > 0; --i)
+      if (at[i] != at[i - 1]) return at[i] > at[i - 1] ? 1 : -1;
+    return 1;
+  }
+};
+
+/// The diagnosis of errors (mm) in X with u = 1 um. `logged`: a temperature of each row.
+Diagnosis diagnosis_of(const Poses& poses, const Eigen::ArrayXd& error, const Eigen::ArrayXd& logged) {
+  std::mt19937_64 random(kSeed + 1);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string text = "t[s],X[mm],Y[mm],dirX,dirY,T_bed[degC],x[mm],y[mm],u[um],run,role\n";
+  for (int i = 0; i < Poses::kRows; ++i) {
+    const double x = poses.x[i] + error[i] + noise(random), y = poses.y[i] + noise(random);
+    text += fmt::format("{},{},{},{},{},{:.4f},{:.6f},{:.6f},1,r{},{}\n", poses.time[i], poses.x[i],
+                        poses.y[i], poses.sense(poses.x, i), poses.sense(poses.y, i), logged[i], x, y,
+                        i / Poses::kOfRun, i % 5 == 4 ? "check" : "fit");
+  }
+  const Machine machine = parse_machine(kTable, "m.xml");
+  return diagnose::diagnose(kTable, machine, parse_measurement(text, "m.csv", machine));
+}
+
+bool names_nothing(const Diagnosis& answer) {
+  return answer.verdict == Verdict::kUnexplained &&
+         std::none_of(answer.ladder.begin() + 1, answer.ladder.end(),
+                      [](const LadderStep& step) { return step.certain; });
+}
+
+/// A temperature of the hall that has nothing to do with the error.
+Eigen::ArrayXd hall(const Poses& poses) { return 20 + 0.5 * (poses.time / 2100).sin(); }
+
+/// The scale follows the humidity of the hall, which rises on the whole as a warm-up does.
+TEST(Course, AnErrorThatOnlyRisesLikeAWarmUpIsNoWarmUp) {
+  const Poses poses;
+  const Eigen::ArrayXd rise = 1 - (-poses.time / 3000).exp(), part = poses.x / 500;
+  const Eigen::ArrayXd humidity = rise + 0.4 * (poses.time / 500).sin();
+
+  const Diagnosis unrecorded = diagnosis_of(poses, 0.008 * part * humidity, hall(poses));
+  const Diagnosis warm_up = diagnosis_of(poses, 0.008 * part * rise, hall(poses));
+
+  EXPECT_TRUE(names_nothing(unrecorded)) << "seed " << kSeed << ": " << unrecorded.explanation;
+  EXPECT_NE(unrecorded.explanation.find("another course over the rows"), std::string::npos)
+      << unrecorded.explanation;
+  EXPECT_EQ(warm_up.verdict, Verdict::kMissingEffect) << warm_up.explanation;
+  EXPECT_EQ(warm_up.ladder.at(1).effect, "warmup-drift");
+}
+
+/// The scale follows a temperature of which the thermometer sees a part, beside another warmth.
+TEST(Course, AThermometerThatFollowsTheErrorInPartIsNotItsCause) {
+  const Poses poses;
+  const Eigen::ArrayXd own = (poses.time / 1100).sin() + 0.6 * (poses.time / 530).cos();
+  const Eigen::ArrayXd other = (poses.time / 760 + 1).sin();
+  const Eigen::ArrayXd error = 1.5e-5 * poses.x * own;
+
+  const Diagnosis decoy = diagnosis_of(poses, error, 20 + 0.8 * own + 0.6 * other);
+  const Diagnosis cause = diagnosis_of(poses, error, 20 + own);
+
+  EXPECT_TRUE(names_nothing(decoy)) << "seed " << kSeed << ": " << decoy.explanation;
+  EXPECT_EQ(cause.verdict, Verdict::kMissingEffect) << cause.explanation;
+  EXPECT_EQ(cause.ladder.at(1).effect, "thermal-scale");
+}
+
+/// A drag along the previous move grows with its share in Y: the sense alone explains most of it.
+TEST(Course, ADragAlongThePreviousMoveIsNoPlay) {
+  const Poses poses;
+  Eigen::ArrayXd drag = Eigen::ArrayXd::Zero(Poses::kRows), play = drag;
+  for (int i = 0; i < Poses::kRows; ++i) {
+    const double length = std::hypot(poses.move_x(i), poses.move_y(i));
+    drag[i] = length > 0 ? 0.0025 * poses.move_y(i) / length : 0;
+    play[i] = 0.002 * poses.sense(poses.y, i);
+  }
+
+  const Diagnosis dragged = diagnosis_of(poses, drag, hall(poses));
+  const Diagnosis loose = diagnosis_of(poses, play, hall(poses));
+
+  EXPECT_TRUE(names_nothing(dragged)) << "seed " << kSeed << ": " << dragged.explanation;
+  EXPECT_NE(dragged.explanation.find("depends on the previous move"), std::string::npos)
+      << dragged.explanation;
+  EXPECT_EQ(loose.verdict, Verdict::kMissingEffect) << loose.explanation;
+  EXPECT_EQ(loose.ladder.at(1).effect, "lateral-play");
+}
+
+}  // namespace
+}  // namespace vernier::course_test
