@@ -124,7 +124,7 @@ export function candidates(result) {
       .map((p) =>
         typeof p === 'string'
           ? p
-          : `${p.name} = ${number(p.value, 4)}${Number.isFinite(p.std) ? ` ± ${number(p.std, 2)}` : ''} ${p.unit ?? ''}`,
+          : `${p.name} = ${number(p.value, 4)}${Number.isFinite(p.std) ? ` ± ${number(p.std, 2)}` : ''} ${p.unit ?? ''}${p.note ? ` (${p.note})` : ''}`,
       )
       .join('; ');
   const detail = (one) =>
