@@ -91,6 +91,7 @@ TEST_F(ProbedBed, ALoopThatLeavesMoreThanTheModelSaysWhyAndWhatToDo) {
   EXPECT_THAT(said, HasSubstr("raise maxcorrection of the axes"));
   const auto json = nlohmann::json::parse(text::read_file(folder + "/out/improve.json"));
   EXPECT_TRUE(json["loop"].back().contains("note"));
+  EXPECT_EQ(json["simulation"]["note"], json["loop"].back()["note"]);  // the page shows it
   // Without the limit there is nothing to say.
   ASSERT_EQ(run("vernier improve p.xml tip.csv -o out --yes"), 0) << said;
   EXPECT_THAT(said, Not(HasSubstr("the loop leaves ")));

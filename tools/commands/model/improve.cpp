@@ -329,7 +329,7 @@ class Improver {
   void simulate(Json& json) {
     json["loop"] = Json::array();
     for (const ModelStep* model_step : {&model_steps_.front(), &model_steps_.back()}) {
-      const Json r = replayed(*model_step, all_rows_, first_);
+      Json r = replayed(*model_step, all_rows_, first_);
       json["loop"].push_back(r);
       if (r.contains("why_not")) {
         fmt::print(out_, "simulated loop with {}: the loop did not run: {}\n", model_step->label,
@@ -349,7 +349,7 @@ class Improver {
                  error("check_rms_after"));
       if (const std::string more = leaves_more(*model_step, r); !more.empty()) {
         fmt::print(out_, "  {}\n", more);
-        json["loop"].back()["note"] = more;
+        json["loop"].back()["note"] = r["note"] = more;
       }
       json["simulation"] = r;
       if (model_steps_.size() == 1) break;
