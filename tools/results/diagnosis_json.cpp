@@ -60,8 +60,12 @@ Json candidate_json(const diagnose::CandidateFinding& finding, const model::Mach
   add_place(json, finding.candidate, machine);
   json["term"] = term_text(finding.candidate);
   json["parameters"] = Json::array();
-  for (const fit::ParameterEstimate& item : finding.parameters)
+  for (const fit::ParameterEstimate& item : finding.parameters) {
     json["parameters"].push_back(parameter_json(item));
+    if (std::string note = reversal_note({term_text(finding.candidate)}, item.name, item.value, item.unit);
+        !note.empty())
+      json["parameters"].back()["note"] = std::move(note);
+  }
   json["rms_after_um"] = text::or_null(finding.rms_after_um);
   json["check_rms_before_um"] = text::or_null(finding.check_rms_before_um);
   json["check_rms_after_um"] = text::or_null(finding.check_rms_after_um);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 
@@ -13,6 +14,7 @@
 #include "tools/fit/size.h"
 #include "tools/format/columns.h"
 #include "tools/kinematics/correction.h"
+#include "tools/maths/factors.h"
 #include "tools/results/detail.h"
 #include "tools/results/fit_findings.h"
 #include "tools/text/optional_json.h"
@@ -112,13 +114,17 @@ ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m)
   ordered_json json =
       shared(result.machine, m, result.before, result.after, result.check, result.parameters.size());
   json["parameters"] = ordered_json::array();
-  for (const fit::ParameterEstimate& item : result.estimates)
+  const std::vector<std::string> chain = chain_texts(result.machine);
+  for (const fit::ParameterEstimate& item : result.estimates) {
     json["parameters"].push_back({{"name", item.name},
                                   {"value", item.value},
                                   {"std", item.std},
                                   {"unit", item.unit},
                                   {"from", fit::origin_name(item.from)},
                                   {"scale", item.scale}});
+    if (std::string note = reversal_note(chain, item.name, item.value, item.unit); !note.empty())
+      json["parameters"].back()["note"] = std::move(note);
+  }
   json["noise_model"] = noise_json(result.noise, fit::noise_unit(m));
   json["unidentifiable"] = ordered_json::array();
   for (const auto& group : result.observability.unidentifiable) {
@@ -175,6 +181,39 @@ ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m)
   json["domains"] = domains_json(result.machine, m);
   json["notes"] = result.machine.notes;
   return json;
+}
+
+std::vector<std::string> chain_texts(const model::Machine& machine) {
+  std::vector<std::string> texts;
+  for (const auto* branch : {&machine.workpiece, &machine.tool})
+    for (const model::Transform& transform : *branch)
+      texts.insert(texts.end(), transform.text.begin(), transform.text.end());
+  return texts;
+}
+
+std::string reversal_note(const std::vector<std::string>& terms, const std::string& name, double value,
+                          const std::string& unit) {
+  const std::string sense = format::entry_of(format::AxisQuantity::kSense).prefix;
+  const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  for (const std::string& term : terms) {
+    std::string text = term;
+    std::erase(text, ' ');
+    const std::string start = name + "*" + sense;
+    const std::size_t at = text.find(start);
+    if (at == std::string::npos) continue;
+    std::size_t end = at + start.size();
+    while (end < text.size() && in_name(text[end])) ++end;
+    const bool alone = end == text.size() || text[end] == '+' || text[end] == '-' || text[end] == ')';
+    const bool whole = at == 0 || text[at - 1] == '+' || text[at - 1] == '(';
+    if (!alone || !whole) continue;
+    const bool length = unit == "mm";
+    if (!length && unit != "deg") continue;
+    return fmt::format("coefficient of {}; reversal value B = {:.4g} {}",
+                       text.substr(at + name.size() + 1, end - at - name.size() - 1),
+                       2 * value * (length ? maths::kUmPerMm : maths::kArcsecPerDeg),
+                       length ? "um" : "arcsec");
+  }
+  return {};
 }
 
 ordered_json compare_json(const model::Machine& machine, const model::Measurement& m,

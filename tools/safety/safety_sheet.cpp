@@ -206,8 +206,7 @@ class Judge {
       add(SafetyRule::kInputRange, std::nullopt, "");
       return;
     }
-    double axis_worst = 0, input_worst = 0;
-    std::string axis_of, input_of;
+    std::vector<Outside> axes, inputs;
     const auto overhang = [&](const model::FitRecord::Range& measured, double low, double high) {
       const double outside = std::max(0.0, measured.min - low) + std::max(0.0, high - measured.max);
       return outside / std::max(measured.max - measured.min, 1e-3 * (high - low));
@@ -221,21 +220,35 @@ class Judge {
       if (const auto axis = machine_.find_axis(measured.name)) {
         const auto range = model::work_range(machine_, *axis);
         if (!range || !acts(machine_, {model::SymbolKind::kAxis, *axis})) continue;
-        if (const double share = overhang(measured, (*range)[0], (*range)[1]); share > axis_worst) {
-          axis_worst = share;
-          axis_of = region("axis", measured, (*range)[0], (*range)[1]);
-        }
+        axes.push_back({overhang(measured, (*range)[0], (*range)[1]),
+                        region("axis", measured, (*range)[0], (*range)[1])});
       } else if (const auto input = machine_.find_input(measured.name)) {
         const model::Input& item = machine_.inputs[*input];
         if (!item.min || !item.max || !acts(machine_, {model::SymbolKind::kInput, *input})) continue;
-        if (const double share = overhang(measured, *item.min, *item.max); share > input_worst) {
-          input_worst = share;
-          input_of = region("input", measured, *item.min, *item.max);
-        }
+        inputs.push_back(
+            {overhang(measured, *item.min, *item.max), region("input", measured, *item.min, *item.max)});
       }
     }
-    add(SafetyRule::kMeasuredRange, axis_worst, axis_of);
-    add(SafetyRule::kInputRange, input_worst, input_of);
+    add_outside(SafetyRule::kMeasuredRange, std::move(axes));
+    add_outside(SafetyRule::kInputRange, std::move(inputs));
+  }
+
+  /// An axis or an input that works outside the range in which it was measured.
+  struct Outside {
+    double share = 0;  // of the measured range
+    std::string text;
+  };
+
+  /// The value of the rule is the largest share; its culprit names all that exceed the limit, largest first.
+  void add_outside(SafetyRule rule, std::vector<Outside> list) {
+    std::stable_sort(list.begin(), list.end(),
+                     [](const Outside& a, const Outside& b) { return a.share > b.share; });
+    std::string culprit;
+    for (const Outside& one : list) {
+      const bool worst = &one == &list.front() && one.share > 0;
+      if (worst || one.share > text_of(rule).limit) culprit += (culprit.empty() ? "" : "; ") + one.text;
+    }
+    add(rule, list.empty() ? 0 : list.front().share, std::move(culprit));
   }
 
   void judge_set_up() {
@@ -360,7 +373,9 @@ std::string SafetySheet::refusal() const {
   if (const std::string remedy = text_of(worst.rule).remedy; !remedy.empty()) text += "; " + remedy;
   std::string accept;
   for (const SafetyFinding* finding : failed) {
-    if (finding != &worst) text += fmt::format("; also not met: {}", figures(*finding));
+    if (finding != &worst)
+      text += fmt::format("; also not met: {}{}", figures(*finding),
+                          finding->culprit.empty() ? "" : ": " + finding->culprit);
     accept += fmt::format(" --accept {}", rule_name(finding->rule));
   }
   return text + fmt::format(";{} overrides", accept);

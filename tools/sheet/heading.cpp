@@ -97,6 +97,70 @@ std::string without_brackets(std::string text) {
   return text;
 }
 
+/// The unit that is a decimal part of a millimetre or an inch, as dial gauges have it: "1/100 mm", "0,01 mm",
+/// "Hundertstel", "Teilstriche 0,01 mm"; "tenths" are 0.0001 inch. nullopt for other texts.
+std::optional<std::string> decimal_part(std::string_view words) {
+  std::string text;
+  for (const char c : text::in_small_letters(words))
+    if (c != ' ' && c != '\t') text += c == ',' ? '.' : c;
+  const auto strip = [&](std::string_view word, bool front) {
+    if (text.size() <= word.size() || !(front ? text.starts_with(word) : text.ends_with(word))) return;
+    text.erase(front ? 0 : text.size() - word.size(), word.size());
+  };
+  for (const std::string_view word : {"teilstriche", "teilstrich", "skalenteile", "skalenteil", "skt.", "skt",
+                                      "divisions", "division", "div.", "div", "of", "a", "=", ":"}) {
+    strip(word, true);
+    strip(word, false);
+  }
+  for (const std::string_view word : {"/", "per", "je", "pro"}) strip(word, false);
+  if (text.starts_with('.')) text.insert(0, "0");
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kParts = {{
+      {"0.1", "0.1"},
+      {"1/10", "0.1"},
+      {"0.01", "0.01"},
+      {"1/100", "0.01"},
+      {"0.001", "0.001"},
+      {"1/1000", "0.001"},
+      {"0.0001", "0.0001"},
+      {"1/10000", "0.0001"},
+  }};
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kOf = {{
+      {"mm", "mm"},
+      {"millimeter", "mm"},
+      {"millimetre", "mm"},
+      {"ofmm", "mm"},
+      {"in", "in"},
+      {"inch", "in"},
+      {"zoll", "in"},
+      {"\"", "in"},
+      {"in.", "in"},
+  }};
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kWords = {{
+      {"zehntel", "0.1mm"},
+      {"hundertstel", "0.01mm"},
+      {"tausendstel", "0.001mm"},
+      {"zehntelmm", "0.1mm"},
+      {"hundertstelmm", "0.01mm"},
+      {"tausendstelmm", "0.001mm"},
+      {"hundredthsofmm", "0.01mm"},
+      {"hundredthsofamm", "0.01mm"},
+      {"thousandthsofmm", "0.001mm"},
+      {"thousandthsofamm", "0.001mm"},
+      {"tenths", "0.0001in"},
+      {"tenth", "0.0001in"},
+  }};
+  std::string unit;
+  for (const auto& [word, meant] : kWords)
+    if (text == word) unit = meant;
+  for (const auto& [part, size] : kParts)
+    for (const auto& [of, whole] : kOf)
+      if (text.size() == part.size() + of.size() && text.starts_with(part) && text.ends_with(of))
+        unit = std::string(size) + std::string(whole);
+  if (unit == "0.001mm") return "um";
+  if (unit == "0.001in") return "thou";
+  return unit.empty() || !format::find_unit(unit) ? std::nullopt : std::optional(unit);
+}
+
 bool is_numeric(const std::string& cell, const Sheet& sheet) {
   return plain_number(cell, sheet.decimal_comma).has_value();
 }
@@ -245,7 +309,7 @@ std::optional<std::string> unit_meant(std::string_view word) {
   // Capital letters that do not belong there: MM, Sec. Not for a single one: A is no a, M no m.
   if (bare.size() > 1)
     if (const auto unit = format::find_unit(small)) return std::string(unit->name);
-  return std::nullopt;
+  return decimal_part(bare);
 }
 
 std::optional<std::pair<std::string, std::string>> number_and_unit(std::string_view cell,
@@ -287,6 +351,14 @@ Heading parse_heading(std::string_view cell) {
       heading.unknown_unit = text::trimmed(text.substr(begin + 1, end - begin - 1));
       heading.name = text::trimmed(text.substr(0, begin));
     }
+  }
+  // "1/100 mm" after " in ", or at the end: the longest text that is a unit, so that "0,01 mm" is no mm.
+  for (std::size_t at = 1; at < text.size(); ++at) {
+    if (std::string_view(" /,;:_").find(text[at - 1]) == std::string_view::npos || text[at] == ' ') continue;
+    if (!decimal_part(text.substr(at)) || !take(at, text.size(), at)) continue;
+    if (heading.name.size() > 3 && heading.name.ends_with(" in"))
+      heading.name = text::trimmed(heading.name.substr(0, heading.name.size() - 3));
+    return heading;
   }
   for (const std::string_view between : {" in ", " ", "/", ",", "_"}) {
     const auto at = text.rfind(between);

@@ -54,6 +54,49 @@ bool are_numbered(const std::vector<Line>& lines, const std::vector<Line>& signe
   });
 }
 
+/// True if a cell of this line begins with a quote that the line does not close. `open`: the line begins
+/// inside a quoted cell.
+bool leaves_quote_open(std::string_view line, bool open) {
+  bool begin = true;
+  for (std::size_t at = 0; at < line.size(); ++at) {
+    const char c = line[at];
+    if (open && c == '"' && at + 1 < line.size() && line[at + 1] == '"')
+      ++at;
+    else if (open && c == '"')
+      open = false;
+    else if (!open && begin && c == '"')
+      open = true;
+    if (!open && c != ' ') begin = std::string_view(",;\t|").find(c) != std::string_view::npos;
+  }
+  return open;
+}
+
+std::size_t end_of_line(const std::string& text, std::size_t at) {
+  return std::min(text.find_first_of("\r\n", at), text.size());
+}
+
+/// The line at `at`, up to `end`, and the lines that continue a quoted cell of it, with a blank for each line
+/// break. `end`: moves to the end of the last line. `number`: counts the further lines.
+std::string whole_line(const std::string& text, std::size_t at, std::size_t& end, std::size_t& number) {
+  constexpr std::size_t kMostLines = 10;  // of one heading
+  std::string line = text.substr(at, end - at);
+  bool open = leaves_quote_open(line, false);
+  std::size_t last = end, more = 0;
+  std::string joined = line;
+  while (open && more < kMostLines && last < text.size()) {
+    const std::size_t next = last + (text.compare(last, 2, "\r\n") == 0 ? 2 : 1);
+    last = end_of_line(text, next);
+    const std::string part = text.substr(next, last - next);
+    joined += " " + part;
+    open = leaves_quote_open(part, true);
+    ++more;
+  }
+  if (open || more == 0) return line;
+  end = last;
+  number += more;
+  return joined;
+}
+
 /// The lines of a table without remarks. `sheet`: gets the remarks, and a note for each remark that could be
 /// a row.
 std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std::string& comment,
@@ -62,19 +105,21 @@ std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std:
   std::size_t number = 0;
   for (std::size_t at = 0; at < text.size();) {
     // Old Macintosh files end their lines by a carriage return alone.
-    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
-    const std::string line = text.substr(at, end - at);
+    std::size_t end = end_of_line(text, at), further = 0;
+    const std::string line = whole_line(text, at, end, further);
     at = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
     ++number;
+    const std::size_t first = number;
+    number += further;
     const std::string bare = text::trimmed(line);
-    if (number <= skip && sheet != nullptr && !bare.empty()) sheet->remarks.push_back({number, bare});
-    if (number <= skip || bare.empty()) continue;
+    if (first <= skip && sheet != nullptr && !bare.empty()) sheet->remarks.push_back({first, bare});
+    if (first <= skip || bare.empty()) continue;
     const bool remark = !comment.empty() && bare.starts_with(comment) && !begins_with_error_value(bare);
-    if (remark && sheet != nullptr) sheet->remarks.push_back({number, bare.substr(comment.size())});
+    if (remark && sheet != nullptr) sheet->remarks.push_back({first, bare.substr(comment.size())});
     if (!remark)
-      lines.push_back({line, number});
+      lines.push_back({line, first});
     else if (comment == "#" && number_of_row(bare) > 0)
-      numbered.push_back({line, number});
+      numbered.push_back({line, first});
   }
   if (numbered.empty()) return lines;
   if (are_numbered(lines, numbered)) {
@@ -213,6 +258,37 @@ void drop_empty_columns(Sheet& sheet) {
     for (auto& row : sheet.rows) row.pop_back();
 }
 
+/// Negative numbers in brackets, as accounting formats write them: "(4.5)" in a row and a column with other
+/// numbers becomes "-4.5", with a note. A row of bracketed numbers alone numbers the columns.
+void read_accounting(Sheet& sheet) {
+  const auto number = [](const std::string& cell) {
+    return plain_number(cell, true).has_value() || plain_number(cell, false).has_value();
+  };
+  const auto inside = [](const std::string& cell) {
+    return cell.size() > 2 && cell.front() == '(' && cell.back() == ')'
+               ? text::trimmed(cell.substr(1, cell.size() - 2))
+               : std::string();
+  };
+  std::size_t read = 0;
+  std::string first;
+  for (auto& row : sheet.rows) {
+    if (std::none_of(row.begin(), row.end(), number)) continue;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const std::string value = inside(row[k]);
+      if (value.empty() || value.front() < '0' || value.front() > '9' || !number(value)) continue;
+      if (std::none_of(sheet.rows.begin(), sheet.rows.end(),
+                       [&](const auto& other) { return number(other[k]); }))
+        continue;
+      if (++read == 1) first = row[k];
+      row[k] = "-" + value;
+    }
+  }
+  if (read > 0)
+    sheet.notes.push_back(fmt::format("{} {} such as \"{}\" {} read as negative numbers (accounting format)",
+                                      std::to_string(read), read == 1 ? "cell" : "cells", first,
+                                      read == 1 ? "is" : "are"));
+}
+
 void guess_decimal(Sheet& sheet) {
   std::size_t point = 0, comma = 0, either_point = 0, either_comma = 0;
   text::Place at_point, at_comma;
@@ -305,6 +381,7 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
     is_number.push_back(std::move(read.is_number[i]));
   }
   make_even(sheet);
+  read_accounting(sheet);
   settle_decimal(sheet, is_number, format.decimal_comma);
 }
 
@@ -397,6 +474,7 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     sheet.separator = format.separator != 0 ? format.separator : said != 0 ? said : separator_of_lines(lines);
     split(sheet, lines);
     drop_empty_columns(sheet);
+    read_accounting(sheet);
     if (format.decimal_comma) {
       sheet.decimal_comma = *format.decimal_comma;
       sheet.decimal_known = true;

@@ -19,6 +19,7 @@
 namespace vernier::probed_bed_test {
 
 using testing::HasSubstr;
+using testing::Not;
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,6 +75,45 @@ TEST_F(ProbedBed, ImproveAddsNoTermThatCheckRowsOfTheNozzleDoNotConfirm) {
   const auto json = nlohmann::json::parse(text::read_file(folder + "/out/improve.json"));
   EXPECT_EQ(json["ladder"].size(), 1U);  // the given machine
   EXPECT_EQ(json["not_confirmed"]["check_rows"], 0);
+}
+
+TEST_F(ProbedBed, ALoopThatLeavesMoreThanTheModelSaysWhyAndWhatToDo) {
+  // GIVEN an axis Z that may correct a tenth of the bow only, and touches of the tool point itself
+  std::string limited = kMachine, touches = survey();
+  limited.replace(limited.find("max=\"250\""), 9, "max=\"250\" maxcorrection=\"0.02\"");
+  for (std::size_t at = 0; (at = touches.find(",-30,20,", at)) != std::string::npos;)
+    touches.replace(at, 8, ",0,0,");
+  text::write_file(folder + "/limited.xml", limited);
+  text::write_file(folder + "/tip.csv", touches);
+  ASSERT_EQ(run("vernier improve limited.xml tip.csv -o out --yes"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("the loop leaves "));
+  EXPECT_THAT(said, HasSubstr("the correction is at its limit in "));
+  EXPECT_THAT(said, HasSubstr("raise maxcorrection of the axes"));
+  const auto json = nlohmann::json::parse(text::read_file(folder + "/out/improve.json"));
+  EXPECT_TRUE(json["loop"].back().contains("note"));
+  EXPECT_EQ(json["simulation"]["note"], json["loop"].back()["note"]);  // the page shows it
+  // Without the limit there is nothing to say.
+  ASSERT_EQ(run("vernier improve p.xml tip.csv -o out --yes"), 0) << said;
+  EXPECT_THAT(said, Not(HasSubstr("the loop leaves ")));
+}
+
+TEST_F(ProbedBed, AReversalHasOneValueInFitAndDiagnose) {
+  // GIVEN a reversal value of 12 um: the coefficient of dirX is 6 um
+  text::write_file(
+      folder + "/x.xml",
+      R"xml(<machine name="x"><variables><machineaxes><X min="0" max="100"/></machineaxes></variables>
+  <transforms><sixdof X="X"/></transforms></machine>)xml");
+  std::string rows = "X[mm],dirX,x[mm],u[mm]\n";
+  for (int run = 0; run < 3; ++run)
+    for (int x = 0; x <= 100; x += 10)
+      for (const int sense : {1, -1})
+        rows += std::to_string(x) + "," + std::to_string(sense) + "," +
+                std::to_string(x + 0.006 * sense + 0.0003 * ((x / 10 + run) % 3 - 1)) + ",0.0003\n";
+  text::write_file(folder + "/x.csv", rows);
+  ASSERT_EQ(run("vernier add backlash:axis=X x.xml -o b.xml && vernier fit b.xml x.csv -o f.xml"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("coefficient of dirX; reversal value B = 12 um"));
+  ASSERT_EQ(run("vernier diagnose x.xml x.csv -o d.html"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("(coefficient of dirX; reversal value B = 12 um)"));
 }
 
 TEST_F(ProbedBed, AnExistingMachineFileGetsAnArtefact) {

@@ -336,6 +336,35 @@ TEST(FitFindings, NoiseThatNobodyStatedIsSaid) {
                   "noise-unknown"));
 }
 
+TEST(FitFindings, RepeatsInOtherRunsHaveTheOptionThatMakesThemRepeats) {
+  // GIVEN a positioning test of ISO 230-2: five runs in each direction, and no column setup
+  const Machine machine = model::parse_machine(
+      R"(<machine name="m"><variables><static><k value="0" nominal="0" unit=""/></static>
+         <machineaxes><X min="0" max="500"/></machineaxes></variables>
+         <transforms><sixdof X="X+k*X"/></transforms></machine>)",
+      "m.xml");
+  std::string with = "X[mm],x[mm],dirX,run,setup\n", without = "X[mm],x[mm],dirX,run\n";
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, 0.0007);
+  for (int run = 1; run <= 5; ++run)
+    for (const int sense : {1, -1})
+      for (int at = 0; at <= 500; at += 100) {
+        const std::string row = fmt::format("{},{:.6f},{},{}", at, at * 1.00001 + noise(random), sense, run);
+        without += row + "\n";
+        with += row + ",1\n";
+      }
+  const auto text = [&](const std::string& file) {
+    const Machine fitted = fit::fit(machine, model::parse_measurement(file, "m.csv", machine)).machine;
+    for (const auto& one : fitted.fitted->findings)
+      if (one.code == "noise-unknown") return one.text;
+    return std::string();
+  };
+  // THEN the finding says what to do, and the column that it names makes the noise known
+  EXPECT_NE(text(without).find("repeat targets in other runs"), std::string::npos) << text(without);
+  EXPECT_NE(text(without).find("--set \"setup=1\""), std::string::npos);
+  EXPECT_EQ(text(with), "");
+}
+
 TEST(FitFindings, ATurnThatOneToolShowsIsUncertainWithAnother) {
   // GIVEN a nose that shifts along X with its heat, a model in which it turns, and one tool
   const auto text = [](bool turn) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "tests/unit/import/table_reading.h"
 #include "tools/import/tables/directions.h"
@@ -16,6 +17,7 @@
 namespace vernier::sheet_meaning_test {
 
 using namespace vernier::importer;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -211,6 +213,156 @@ TEST(SheetMeaningOfACover, NumbersOfAWorkbookSeparateNoThousands) {
   const sheet::SheetToWrite table = {"X",
                                      {{"X [mm]", "Abw. X [um]"}, {"0", "1"}, {"1.125", "2"}, {"1000", "1"}}};
   EXPECT_EQ(read(sheet::workbook_of({table})), "X[mm],x[mm]\n0,0.001\n1.125,1.127\n1000,1000.001\n");
+}
+
+// Sizes of deviations that only a wrong unit explains.
+
+TEST(SheetSize, ExchangedUnitsOfTwoHeadingsAreRefused) {
+  const std::string table = "Soll X [um];Abw. X [mm]\n0;0,0\n100;3,2\n200;5,4\n300;9,1\n400;13,9\n";
+  EXPECT_THAT(read(table),
+              StartsWith("refused: s.csv:1: \"Abw. X [mm]\": the positions \"Soll X [um]\" are in "
+                         "the smaller unit [um] and their deviations in [mm], so X would move by "
+                         "0.4 mm only: the units of the two headings are probably exchanged"));
+  SheetWords sure;
+  sure.deviations = {"X[mm]=Abw. X [mm]"};
+  EXPECT_THAT(read(table, sure), HasSubstr("400,14.3\nnote: "));
+}
+
+TEST(SheetSize, DeviationsThatNoMachineHasAreRefusedUnlessTheUserStatesTheUnit) {
+  const std::string table = "Soll X [mm];Abw. X [mm]\n0;0,0\n100;3,2\n200;5,4\n300;9,1\n400;13,9\n";
+  EXPECT_THAT(read(table),
+              HasSubstr("half of the deviations are larger than 5.4 mm, and X moves by 400 mm: no "
+                        "machine has such errors; if the unit [mm] is wrong, correct the unit in "
+                        "the heading; if it is right, give --deviation \"X[mm]=Abw. X [mm]\""));
+  SheetWords sure;
+  sure.deviations = {"X[mm]=Abw. X [mm]"};
+  EXPECT_THAT(read(table, sure), HasSubstr("400,413.9\nnote: \"Abw. X [mm]\": half of the deviations"));
+}
+
+TEST(SheetSize, AnUnusualDeviationIsNotedAndAUsualOneIsNot) {
+  EXPECT_THAT(
+      read("Soll X [mm];Abw. X [mm]\n0;1,0\n500;2,2\n1000;2,4\n"),
+      HasSubstr("note: \"Abw. X [mm]\": the deviations are as large as 2.4 mm, and X moves by 1e+03 mm: "
+                "unusual for a machine; if the unit [mm] is wrong"));
+  EXPECT_THAT(read("Soll X [mm];Abw. X [um]\n0;1,0\n500;22\n1000;-400\n"), Not(HasSubstr("note")));
+  EXPECT_THAT(read("Soll X [mm];Abw. X [um]\n0;0,001\n500;0,022\n1000;0,014\n"),
+              HasSubstr("note: \"Abw. X [um]\": all deviations are below 0.1 um, less than an instrument"));
+}
+
+TEST(SheetSize, OneDeviationAThousandTimesAsLargeAsTheOtherOnesIsRefusedWithItsLine) {
+  EXPECT_THAT(
+      read("Soll X [mm];Abw. X [mm]\n0;0,000\n100;0,0032\n200;0,0054\n300;13,9\n400;0,0091\n"),
+      StartsWith("refused: s.csv:5: \"Abw. X [mm]\": the deviation 13.9 mm in this row is more than 100 "
+                 "times as large as the other ones (at most 9.1 um): correct the cell or its unit"));
+}
+
+TEST(SheetSize, ARunAndAColumnInAnotherUnitAreRefused) {
+  EXPECT_THAT(
+      read("Soll X [mm];Lauf 1 [um];Lauf 2 [um]\n0;1;0,001\n100;3,2;0,003\n200;5,4;0,006\n"),
+      HasSubstr("the deviations of run 2 are about 3 nm, those of run 1 about 3.2 um: the two runs do "
+                "not have the same unit"));
+  SheetWords still;
+  still.constants = {"Y[mm]=0"};
+  EXPECT_THAT(
+      read("X [mm];Abw. X [um];Abw. Y [um]\n0;1,0;0,0010\n100;3,2;0,0032\n200;5,4;0,0054\n", still),
+      HasSubstr("\"Abw. Y [um]\": the deviations are about 3.2 nm, those of \"Abw. X [um]\" about 3.2 "
+                "um: the two columns cannot both have the right unit"));
+}
+
+TEST(SheetUnit, DivisionsOfADialGaugeAreUnits) {
+  for (const std::string heading :
+       {"Abw. X [1/100 mm]", "Abw. X [0,01 mm]", "Abw. X in 1/100 mm", "Abw. X 0,01 mm", "Abw. X Hundertstel",
+        "Abw. X [Hundertstel mm]", "Abw. X (Teilstriche 0,01 mm)", "Abw. X Teilstriche 0,01 mm",
+        "Abw. X 0.01 mm/div", "Abw. X/0.01 mm"})
+    EXPECT_EQ(read("Soll X [mm];" + heading + "\n0;0\n100;3\n200;5,5\n"),
+              "X[mm],x[mm]\n0,0\n100,100.03\n200,200.055\nnote: \"" + heading +
+                  "\": one unit is 0.01 mm (10 um)\n");
+  EXPECT_EQ(read("Soll X [mm];Abw. X [1/1000 mm]\n0;0\n100;3\n"), "X[mm],x[mm]\n0,0\n100,100.003\n");
+  EXPECT_EQ(read("Soll X [mm];Error X [0.001 in]\n0;0\n100;1\n"), "X[mm],x[mm]\n0,0\n100,100.0254\n");
+  EXPECT_THAT(
+      read("Soll X [mm];Error X [tenths]\n0;0\n100;1\n"),
+      StartsWith("X[mm],x[mm]\n0,0\n100,100.00254\nnote: \"Error X [tenths]\": one unit is 0.0001 inch"));
+  for (const std::string unit : {"0.01mm", "0,01 mm", "1/100 mm", "Hundertstel", "Teilstriche 0,01 mm"}) {
+    SheetWords words;
+    words.unit = unit;
+    EXPECT_THAT(read("Soll X [mm];Abw. X\n0;0\n100;3\n", words), HasSubstr("\n100,100.03\n")) << unit;
+  }
+}
+
+TEST(SheetUnit, AnUnknownUnitHasAnOptionThatReadsIt) {
+  const std::string table = "Soll X [mm];Abw. X [Skt]\n0;0\n100;3\n";
+  EXPECT_THAT(read(table), HasSubstr("state the unit, for example --deviation \"X[0.01mm]=Abw. X [Skt]\""));
+  SheetWords words;
+  words.deviations = {"X[0.01mm]=Abw. X [Skt]"};
+  EXPECT_THAT(read(table, words), StartsWith("X[mm],x[mm]\n0,0\n100,100.03\n"));
+}
+
+// Directions that the order of the rows contradicts.
+
+TEST(SheetDirection, SignsAgainstTheOrderOfTheRowsAreRefusedUnlessTheUserAssignsThem) {
+  for (const auto& [up, down] : {std::pair("+", "-"), std::pair("up", "down"), std::pair("1", "-1")}) {
+    std::string table = "Soll X [mm];Abw. X [um];Richtung\n";
+    for (const int x : {200, 100, 0}) table += std::to_string(x) + ";1;" + up + "\n";
+    for (const int x : {0, 100, 200}) table += std::to_string(x) + ";2;" + down + "\n";
+    EXPECT_THAT(read(table),
+                HasSubstr("contradict the order of the rows: the positions of X decrease from row to "
+                          "row in the direction + (up); exchange the two directions in the file, or "
+                          "leave the column out (--leave \"Richtung\")"));
+    SheetWords given, left;
+    given.columns = {"dirX=Richtung"};
+    EXPECT_THAT(read(table, given), StartsWith("X[mm],x[mm],dirX\n200,200.001,1\n"));
+    EXPECT_THAT(read(table, given), HasSubstr("note: \"Richtung\": the directions ("));
+    left.left = {"Richtung"};
+    EXPECT_THAT(read(table, left), StartsWith("X[mm],x[mm]\n200,200.001\n"));
+  }
+}
+
+TEST(SheetDirection, ATableSortedByThePositionShowsNoDirection) {
+  EXPECT_THAT(read("X [mm];Abw. X [um];Richtung\n0;1;+\n1;1;+\n2;1;+\n0;2;-\n1;2;-\n2;2;-\n"),
+              Not(HasSubstr("contradict")));
+  EXPECT_THAT(read("X[mm],x[mm],dirX\n2,2,1\n1,1,1\n0,0,1\n0,0,-1\n1,1,-1\n2,2,-1\n"),
+              HasSubstr("note: \"dirX\": the directions (-1, 1) contradict the order of the rows"));
+}
+
+TEST(SheetDirection, UpInAHeadingOfATableWithDecreasingPositionsIsNoted) {
+  EXPECT_THAT(
+      read("Soll Z [mm];up [um];down [um]\n0;1;2\n-1;3;4\n-2;5;6\n"),
+      HasSubstr("note: \"up [um]\" is read as the approach in the direction of increasing positions"));
+}
+
+// Forms of cells.
+
+TEST(SheetCells, ALineBreakInAQuotedHeadingIsABlank) {
+  EXPECT_EQ(read("\"Soll X\n[mm]\";\"Abw. X\r\n[um]\"\n0;1,5\n100;3,2\n"),
+            "X[mm],x[mm]\n0,0.0015\n100,100.0032\n");
+  EXPECT_THAT(read("\"Soll X\n[mm]\";\"Abw. X [um]\"\n0;1,5\n100;a\n"), HasSubstr("s.csv:4: \"a\""));
+  EXPECT_THAT(read("\"Soll X [mm];Abw. X [um]\n0;1,5\n100;3\n"), HasSubstr("a closing quote is missing"));
+}
+
+TEST(SheetCells, NumbersInBracketsAreNegative) {
+  EXPECT_EQ(read("Soll X [mm];Abw. X [um]\n0;(1,5)\n100;3\n200;(12)\n"),
+            "X[mm],x[mm]\n0,-0.0015\n100,100.003\n200,199.988\nnote: 2 cells such as \"(1,5)\" are read as "
+            "negative numbers (accounting format)\n");
+}
+
+TEST(SheetRemedy, ADeviationWithoutAPositionNamesTheOptionThatReadsIt) {
+  struct Remedy {
+    const char *table, *option, *deviation, *constant, *read;
+  };
+  for (const Remedy& one :
+       {Remedy{"Nr;Abw. X [um]\n1;1\n2;2\n", "--set \"X[mm]=0\"", "", "X[mm]=0", ",0.001,0\n"},
+        Remedy{"X [mm];Abw. B [arcsec]\n1;1\n2;2\n", "--set \"B[deg]=0\"", "", "B[deg]=0",
+               "1,0.000277778,0\n"},
+        Remedy{"Nr;Abweichung [um]\n1;1\n2;2\n", "--deviation \"X=Abweichung [um]\" --set \"X[mm]=0\"",
+               "X=Abweichung [um]", "X[mm]=0", ",0.001,0\n"},
+        Remedy{"U [mm];Abw. U [um]\n1;1\n2;2\n", "--deviation \"X=Abw. U [um]\" --set \"X[mm]=0\"",
+               "X=Abw. U [um]", "X[mm]=0", "1,0.001,0\n"}}) {
+    EXPECT_THAT(read(one.table), AllOf(StartsWith("refused: "), HasSubstr(one.option)));
+    SheetWords words;
+    if (*one.deviation != '\0') words.deviations = {one.deviation};
+    words.constants = {one.constant};
+    EXPECT_THAT(read(one.table, words), HasSubstr(one.read));
+  }
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ try {
   const texts = await value(`(() => {
     const found = [document.title];
     const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT,
-      (node) => node.parentElement.closest('script, style, noscript') ? NodeFilter.FILTER_REJECT : NodeFilter.FILTER_ACCEPT);
+      (node) => node.parentElement.closest('script, style, noscript, code') ? NodeFilter.FILTER_REJECT : NodeFilter.FILTER_ACCEPT);
     while (walk.nextNode()) if (walk.currentNode.textContent.trim()) found.push(walk.currentNode.textContent.trim());
     for (const node of document.querySelectorAll('[title], [aria-label]'))
       for (const name of ['title', 'aria-label']) if (node.getAttribute(name)) found.push(node.getAttribute(name));

@@ -124,6 +124,23 @@ TEST(SafetySheet, JudgesWhereItWorksAgainstWhereItWasMeasured) {
   EXPECT_TRUE(safety_sheet(fitted).ok()) << safety_sheet(fitted).refusal();
 }
 
+TEST(SafetySheet, NamesEveryAxisThatWorksOutsideItsMeasuredRange) {
+  const std::string statics =
+      "<alpha value=\"0\" nominal=\"0\" unit=\"rad\"/><beta value=\"0\" nominal=\"0\" unit=\"\"/>";
+  Machine machine = small_machine(statics);
+  machine.statics[0].value = 5e-5;
+  Measurement m = survey(machine, small_machine(statics), 1e-3);
+  Machine fitted = fit::fit(machine, m).machine;
+  model::FitRecord record = *fitted.fitted;
+  for (model::FitRecord::Range& one : record.measured) one.max = one.min + 0.4 * (one.max - one.min);
+  fitted.fitted = std::make_shared<model::FitRecord>(record);
+  const std::string culprit = finding(safety_sheet(fitted), SafetyRule::kMeasuredRange).culprit;
+  std::size_t named = 0;
+  for (std::size_t at = 0; (at = culprit.find("axis ", at)) != std::string::npos; ++at) ++named;
+  EXPECT_GE(named, 2U) << culprit;
+  EXPECT_NE(safety_sheet(fitted).refusal().find(culprit), std::string::npos);
+}
+
 TEST(SafetySheet, JudgesEveryDeclaredTool) {
   const std::string statics = "<alpha value=\"0\" nominal=\"0\" unit=\"rad\"/>";
   const std::string tables =

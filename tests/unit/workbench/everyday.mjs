@@ -381,7 +381,24 @@ async function looks(page) {
     assert.ok(lines.length > 30);
     for (const [words_of, count] of lines) assert.ok(count <= Math.max(1, words_of.split(' ').length), `"${words_of}" on ${count} lines`);
   }
+  // On paper the rows are there, and nothing that only hands can use.
   await screen('', 1280);
+  await view(page, 'compare');
+  await page.until("document.querySelector('.rows-inner > div')", 'the rows');
+  await screen('print', 740);
+  assert.ok(await page.evaluate("document.querySelector('.rows').offsetHeight > 40"), 'rows on paper');
+  assert.ok(await page.evaluate("[...document.querySelectorAll('.hands')].every((one) => one.offsetHeight === 0)"), 'no buttons on paper');
+  await screen('', 1280);
+  // What contradicts its unit or its direction is refused beside its columns, where the answer is given.
+  await view(page, 'project');
+  for (const [name, text_of, wanted] of [
+    ['units.csv', 'Soll X [um];Abw. X [mm]\n0;0,0\n100;3,2\n200;5,4\n300;9,1\n', 'probably exchanged'],
+    ['dir.csv', 'X [mm];x [mm];Richtung\n9;9,1;+\n4;4,1;+\n0;0,1;+\n0;0,2;-\n4;4,2;-\n9;9,2;-\n', 'contradict the order of the rows'],
+  ]) {
+    await page.drop([{ name, text: text_of }]);
+    await page.until(`document.getElementById('sheet-message')?.textContent.includes(${JSON.stringify(wanted)})`, wanted);
+    assert.ok(await page.evaluate("document.querySelectorAll('#sheet-columns tbody tr').length >= 2"), `${name}: its columns`);
+  }
   // The name of the folder is whole.
   assert.ok(
     await page.evaluate("(() => { const one = document.querySelector('.folder'); return one.scrollWidth <= one.clientWidth; })()"),

@@ -64,8 +64,13 @@ void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
       fmt::print(out, "    not distinguishable in these data: {}\n", fmt::join(c.confounded_with, ", "));
     if (!c.accepted) continue;
     fmt::print(out, "    {}; in the chain: {}\n", diagnose::said_of(c), c.candidate.label);
-    for (const fit::ParameterEstimate& p : c.parameters)
-      fmt::print(out, "    {} = {:.6g} +- {} {}\n", p.name, p.value, fmt::format("{:.2g}", p.std), p.unit);
+    for (const fit::ParameterEstimate& p : c.parameters) {
+      std::string note;
+      for (const effects::CandidateTerm& term : c.candidate.terms)
+        if (note.empty()) note = results::reversal_note({term.text}, p.name, p.value, p.unit);
+      fmt::print(out, "    {} = {:.6g} +- {} {}{}\n", p.name, p.value, fmt::format("{:.2g}", p.std), p.unit,
+                 note.empty() ? "" : " (" + note + ")");
+    }
     fmt::print(out, "    vernier add '{}' MACHINE -o NEW\n", c.add);
   }
 }

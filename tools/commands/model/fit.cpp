@@ -114,10 +114,14 @@ void print_odd_inputs(std::FILE* out, const model::Machine& machine) {
 void print_result(std::FILE* out, const fit::FitResult& result, const model::Measurement& m) {
   print_stages(out, result);
   fmt::print(out, "{:<24} {:>15} {:>12}  {:<6} {}\n", "parameter", "value", "std", "unit", "from");
-  for (const fit::ParameterEstimate& item : result.estimates)
-    fmt::print(out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}\n", item.name, item.value, item.std, item.unit,
+  const std::vector<std::string> chain = results::chain_texts(result.machine);
+  for (const fit::ParameterEstimate& item : result.estimates) {
+    const std::string note = results::reversal_note(chain, item.name, item.value, item.unit);
+    fmt::print(out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}{}\n", item.name, item.value, item.std, item.unit,
                item.from == fit::Origin::kPrior ? "not measured; stays at nominal +- scale"
-                                                : fit::origin_name(item.from));
+                                                : fit::origin_name(item.from),
+               note.empty() ? "" : "; " + note);
+  }
   print_decisions(out, result);
   print_things(out, result);
   print_odd_inputs(out, result.machine);

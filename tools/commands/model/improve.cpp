@@ -90,8 +90,11 @@ Json replayed(const ModelStep& model_step, const model::Measurement& rows, const
     const compile::CompiledMachine compiled = compile::compile_machine(machine, model_step.text, options);
     const auto image = compile::load_image(compiled.image, machine);
     const simulate::ReplayResult r = simulate::replay(*image, m, {});
-    Json json = {
-        {"label", model_step.label}, {"tick_us", *cycle_us}, {"ticks", r.ticks}, {"saturated", r.saturated}};
+    Json json = {{"label", model_step.label},
+                 {"tick_us", *cycle_us},
+                 {"ticks", r.ticks},
+                 {"saturated", r.saturated},
+                 {"slewing", r.slewing}};
     const fit::RoleStatistics before = fit::role_statistics(m, r.before, false),
                               after = fit::role_statistics(m, r.after, false),
                               check_before = fit::role_statistics(m, r.before, true),
@@ -326,7 +329,7 @@ class Improver {
   void simulate(Json& json) {
     json["loop"] = Json::array();
     for (const ModelStep* model_step : {&model_steps_.front(), &model_steps_.back()}) {
-      const Json r = replayed(*model_step, all_rows_, first_);
+      Json r = replayed(*model_step, all_rows_, first_);
       json["loop"].push_back(r);
       if (r.contains("why_not")) {
         fmt::print(out_, "simulated loop with {}: the loop did not run: {}\n", model_step->label,
@@ -344,9 +347,49 @@ class Improver {
                  rate_Hz == 1000 ? "1 kHz" : fmt::format("{} Hz", rate_Hz), model_step->label,
                  error("rms_before"), error("rms_after"), error("check_rms_before"),
                  error("check_rms_after"));
+      if (const std::string more = leaves_more(*model_step, r); !more.empty()) {
+        fmt::print(out_, "  {}\n", more);
+        json["loop"].back()["note"] = r["note"] = more;
+      }
       json["simulation"] = r;
       if (model_steps_.size() == 1) break;
     }
+  }
+
+  /// States why the loop leaves a larger residual than the model, and what to do; empty if it does not.
+  std::string leaves_more(const ModelStep& model_step, const Json& r) const {
+    constexpr double kMore = 1.2;  // the image is in fixed point, and its axes need not express every error
+    const char* unit = model_step.rms_um ? "um" : "urad";
+    const std::optional<double> model = model_step.rms_um ? model_step.rms_um : model_step.rms_urad;
+    const Json &after = r[fmt::format("rms_after_{}", unit)], &before = r[fmt::format("rms_before_{}", unit)];
+    if (!model || !after.is_number() || after.get<double>() <= kMore * *model) return {};
+    const bool worse = before.is_number() && after.get<double>() > before.get<double>();
+    std::string text =
+        fmt::format("the loop leaves {:.3g} {}, the model {:.3g} {}{}: ", after.get<double>(), unit, *model,
+                    unit, worse ? ", and without the correction the residual is smaller" : "");
+    const double ticks = std::max(1.0, r["ticks"].get<double>()), kOften = 0.01;
+    if (r["saturated"].get<double>() > kOften * ticks)
+      return text + fmt::format(
+                        "the correction is at its limit in {:.0f} % of the cycles; raise maxcorrection "
+                        "of the axes in the machine file",
+                        100 * r["saturated"].get<double>() / ticks);
+    if (r["slewing"].get<double>() > kOften * ticks)
+      return text + fmt::format(
+                        "the correction changes faster than maxslew allows in {:.0f} % of the cycles; "
+                        "raise maxslew of the axes, or measure at a lower speed",
+                        100 * r["slewing"].get<double>() / ticks);
+    if (!planes_of_probe().empty())
+      return text +
+             "the rows touch with a probe beside the tool point, and the loop corrects the tool point; "
+             "judge the correction by touches with the tool point (rows with probeX and probeY 0)";
+    if (!all_rows_.things.empty())
+      return text +
+             "the fit estimates the position and the tilt of the touched objects with each model, and "
+             "the loop moves the axes only; judge the correction by a measurement with the correction "
+             "(compare --before OFF.csv --after ON.csv)";
+    return text +
+           "the axes of the machine cannot express all errors of the model, such as rotations of the "
+           "tool or an error in a direction without an axis; vernier compile states what remains";
   }
 
   /// Reports whether the last machine may run. No correction runs yet.

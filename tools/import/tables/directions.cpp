@@ -109,8 +109,52 @@ void write_directions(sheet::Sheet& sheet, const sheet::SheetTable& table, std::
   }
 }
 
-void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table,
-                   const std::vector<SheetColumn>& columns, std::size_t k) {
+/// 1, -1: the direction of the motion with all codes of this sense; 0: the rows do not show one.
+int shown_direction(const std::map<std::string, Steps>& steps, int sense) {
+  Steps all;
+  for (const auto& [code, of] : steps) {
+    const int said = code == "1" ? 1 : code == "-1" ? -1 : sense_said(code);
+    if (said != sense) continue;
+    all.up += of.up;
+    all.down += of.down;
+  }
+  return all.direction();
+}
+
+/// Directions by signs or by words such as up and down, which contradict the order of the positions. Signs of
+/// both directions are a doubt of the column, unless the user assigned it; otherwise the sheet gets a note.
+void judge_signs(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
+                 std::size_t position, std::size_t k) {
+  const std::map<std::string, Steps> steps = steps_of(sheet, table, position, k);
+  const int up = shown_direction(steps, 1), down = shown_direction(steps, -1);
+  // A table that is sorted by the position has one order in both directions, and shows none.
+  if (up >= 0 && down <= 0) return;
+  if (up == down) return;
+  const std::string &heading = table.headings[k].text, &axis = columns[position].name;
+  std::string codes;
+  for (const auto& [code, of] : steps) codes += (codes.empty() ? "" : ", ") + code;
+  const std::string order =
+      fmt::format("the directions ({}) contradict the order of the rows: the positions of {} {}", codes, axis,
+                  up < 0 ? "decrease from row to row in the direction + (up)"
+                         : "increase from row to row in the direction - (down)");
+  const bool own_name = heading == columns[k].name;
+  if (up * down != -1 || columns[k].why != "by its heading" || own_name) {
+    sheet.notes.push_back(fmt::format(
+        "\"{}\": {}; the directions are used as written, + is the approach toward larger positions; if "
+        "this is wrong, exchange + and - in this column, or leave it out (--leave \"{}\")",
+        heading, order, heading));
+    return;
+  }
+  columns[k].doubt_place = {sheet.file, sheet.line[table.heading_row]};
+  columns[k].doubt_word = heading;
+  columns[k].doubt = fmt::format(
+      "{}; exchange the two directions in the file, or leave the column out (--leave \"{}\"); if the "
+      "directions are right and the rows are sorted, give --column \"{}={}\"",
+      order, heading, columns[k].name, heading);
+}
+
+void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
+                   std::size_t k, bool unfolded) {
   const std::string axis =
       columns[k].name.substr(std::string(format::entry_of(format::AxisQuantity::kSense).prefix).size());
   const auto position = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& one) {
@@ -119,8 +163,13 @@ void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table,
   std::set<std::string> found;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
     if (!sheet::is_blank(sheet.rows[row])) found.insert(code_of(sheet.rows[row][k]));
-  std::optional<Codes> codes = meaning_of(found);
-  if (!codes) return;
+  // A column with the name of the measurement file keeps its numbers.
+  std::optional<Codes> codes = table.headings[k].text == columns[k].name ? std::nullopt : meaning_of(found);
+  if (!codes) {
+    if (position != columns.end() && !unfolded)
+      judge_signs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
+    return;
+  }
   const std::string& heading = table.headings[k].text;
   int shown = 0;
   if (position != columns.end()) {
@@ -237,13 +286,12 @@ void note_direction_not_read(sheet::Sheet& sheet, const sheet::SheetTable& table
 
 }  // namespace
 
-void settle_directions(sheet::Sheet& sheet, const sheet::SheetTable& table,
-                       const std::vector<SheetColumn>& columns) {
+void settle_directions(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
+                       bool unfolded) {
   note_direction_not_read(sheet, table, columns);
   for (std::size_t k = 0; k < columns.size(); ++k)
-    if (columns[k].use == SheetColumn::Use::kColumn && is_sense(columns[k].name) &&
-        table.headings[k].text != columns[k].name)
-      settle_column(sheet, table, columns, k);
+    if (columns[k].use == SheetColumn::Use::kColumn && is_sense(columns[k].name))
+      settle_column(sheet, table, columns, k, unfolded);
 }
 
 }  // namespace vernier::importer

@@ -378,17 +378,19 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     }
     if (deviation && !axes.contains(column.name) && alone_measured.contains(column.name))
       column.to_target = true;
-    else if (deviation && !column.name.empty() && !positions.contains(column.name) && !axes.empty())
-      leave(column,
-            fmt::format("the table has no position of {}: state the position, for example --set \"{}[mm]=0\"",
-                        column.name, column.name));
-    else if (deviation && (column.name.empty() || !positions.contains(column.name)))
-      leave(column, "the axis of this deviation is not known: state the axis, --deviation \"X=" +
-                        table.headings[k].text + "\"");
+    else if (deviation && !column.name.empty() && !positions.contains(column.name) && reading_of(column.name))
+      leave(column, fmt::format("the table has no position of {}: state the position, for example {}",
+                                column.name, set_position(column)));
+    else if (deviation && column.name.empty())
+      leave(column, fmt::format("the axis of this deviation is not known: state the axis, --deviation "
+                                "\"X={}\"{}",
+                                table.headings[k].text,
+                                positions.empty() ? " --set \"X[mm]=0\" (with the position of X)" : ""));
     else if (deviation && !reading_of(column.name))
       leave(column, fmt::format("no reading of a measurement file is along {}: state the axis that it is "
-                                "parallel to, --deviation \"X={}\"",
-                                column.name, table.headings[k].text));
+                                "parallel to, --deviation \"X={}\"{}",
+                                column.name, table.headings[k].text,
+                                positions.contains("X") ? "" : " --set \"X[mm]=0\" (with its position)"));
     else if (deviation && measured.contains(*reading_of(column.name)))
       settle_beside_reading(sheet, table, columns, k, measured);
     else if (column.name == kSensePrefix && moved.size() == 1)
@@ -425,6 +427,12 @@ void keep_names_apart(const sheet::SheetTable& table, std::vector<SheetColumn>& 
 }
 
 }  // namespace
+
+std::string set_position(const SheetColumn& deviation) {
+  const bool angle =
+      is_angle(deviation.unit) || (deviation.unit.empty() && format::angle_about(deviation.name));
+  return fmt::format("--set \"{}[{}]=0\"", deviation.name, angle ? "deg" : "mm");
+}
 
 std::vector<SheetColumn> columns_by_headings(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                              const SheetWishes& wishes) {

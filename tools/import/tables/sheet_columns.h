@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <string>
 #include <vector>
 
 #include "tools/import/tables/sheet_wishes.h"
 
 namespace vernier::importer {
+
+/// Returns the option that states the position of the axis of a deviation: --set "X[mm]=0".
+std::string set_position(const SheetColumn& deviation);
 
 /// Returns the meaning of each column by the assignments of the user and the headings alone, before values
 /// decide. Throws InputError if an assignment of the user matches no column.

@@ -7,6 +7,8 @@
 #include <set>
 
 #include "tools/format/columns.h"
+#include "tools/format/units.h"
+#include "tools/import/sizes/deviation_sizes.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/computed_rows.h"
 #include "tools/import/tables/directions.h"
@@ -40,7 +42,8 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   if (!words.sign.empty()) wishes.turned = turned_of(words.sign);
   if (!words.unit.empty()) {
     const auto unit = sheet::unit_meant(words.unit);
-    if (!unit) throw text::InputError("--unit " + words.unit + ": unknown unit");
+    if (!unit)
+      throw text::InputError("--unit " + words.unit + ": unknown unit; known are " + format::known_units());
     wishes.unit = *unit;
   }
   for (const std::string& one : words.constants) {
@@ -159,6 +162,29 @@ void note_rotating_frame(SheetReading& reading) {
                     rotary, columns));
 }
 
+/// Notes the divisions of dial gauges and unusual sizes; a size that only a wrong unit explains is a doubt of
+/// its column.
+void judge_sizes(SheetReading& reading) {
+  std::vector<SizedColumn> sized;
+  for (const SheetColumn& column : reading.columns) {
+    SizedColumn one;
+    if (column.use != SheetColumn::Use::kLeft) {
+      const bool deviation = column.use == SheetColumn::Use::kDeviation;
+      one = {deviation ? SizedColumn::Use::kDeviation : SizedColumn::Use::kPosition, column.name, column.unit,
+             column.to_target ? text::in_small_letters(column.name) : column.name,
+             column.why == "as given" || column.why == "by the profile"};
+    }
+    sized.push_back(std::move(one));
+  }
+  note_decimal_parts(reading.sheet, reading.table, sized);
+  for (const SizeDoubt& doubt : judge_deviation_sizes(reading.sheet, reading.table, sized)) {
+    SheetColumn& column = reading.columns[doubt.column];
+    column.doubt_place = {reading.sheet.file, doubt.line};
+    column.doubt_word = reading.table.headings[doubt.column].text;
+    column.doubt = doubt.text;
+  }
+}
+
 /// Notes the texts that stated the sign, and texts of other tables that state one for themselves.
 void note_signs(SheetReading& reading) {
   if (reading.wishes.turned) return;
@@ -218,10 +244,11 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
                      columns_by_headings(result.sheet, result.table, result.wishes));
   result.columns = columns_of_sheet(result.sheet, result.table, result.wishes);
   fill_down(result);
-  settle_directions(result.sheet, result.table, result.columns);
+  settle_directions(result.sheet, result.table, result.columns, result.runs > 0);
   note_signs(result);
   note_sparse_columns(result);
   note_rotating_frame(result);
+  judge_sizes(result);
   note_exchanged_headings(result.sheet, result.table, result.columns);
   return result;
 }

@@ -57,8 +57,9 @@ std::string unit_doubt(const SheetColumn& column, const std::string& heading, co
   const std::string other = unit == "arcsec" ? "deg" : unit == "um" ? "mm" : "um";
   return fmt::format(
       ", or --deviation \"{0}[{1}]={2}\": only you know the unit of \"{2}\"; its largest value {3:.4g} is "
-      "{3:.4g} {4} or {3:.4g} {1}",
-      column.name, other, heading, largest, unit);
+      "{3:.4g} {4} or {3:.4g} {1}{5}",
+      column.name, other, heading, largest, unit,
+      unit == "arcsec" ? "" : " (divisions of a dial gauge: [0.01mm])");
 }
 
 /// Suggested unit for a column without one: that of the format, for an axis mm or deg.
@@ -184,9 +185,17 @@ std::string assignments_to_try(const sheet::SheetTable& table, const std::vector
            column.why.find("the axis of this deviation is not known") == 0;
   });
   if (open != columns.end() && !actual)
-    return fmt::format("{}--deviation \"{}{}={}\"{}", position, name, open->unit.empty() ? "[um]" : "",
+    return fmt::format("{}--deviation \"{}{}={}\"{}{}", position, name, open->unit.empty() ? "[um]" : "",
                        table.headings[static_cast<std::size_t>(open - columns.begin())].text,
+                       position.empty() && axis == columns.end() ? " --set \"X[mm]=0\"" : "",
                        open->unit.empty() ? "; [um] is an example: state the unit of the values" : "");
+  // A column that was left out has the options that read it.
+  if (reading.empty())
+    for (const SheetColumn& column : columns)
+      if (const auto at = column.why.find("--"); column.use == SheetColumn::Use::kLeft &&
+                                                 at != std::string::npos &&
+                                                 !column.why.starts_with("column "))
+        return column.why.substr(at);
   if (reading.empty()) reading = "HEADING";
   const std::string which = unit.empty() ? "; [mm] and [um] are examples: state the unit of the values" : "";
   if (correction)
@@ -230,6 +239,13 @@ void refuse_unclear_signs(const std::vector<SheetColumn>& columns) {
                              "or nominal - actual: give --sign actual-nominal or --sign nominal-actual");
 }
 
+/// Refuses columns whose values contradict their unit or their direction.
+void refuse_doubtful(const std::vector<SheetColumn>& columns) {
+  for (const SheetColumn& column : columns)
+    if (column.use != SheetColumn::Use::kLeft && !column.doubt.empty())
+      throw text::InputError(column.doubt_place, column.doubt_word, column.doubt);
+}
+
 /// Refuses deviations without their signs: "Betrag der Abweichung" in the heading or in a title, and no value
 /// below zero.
 void refuse_magnitudes(const sheet::Sheet& sheet, const sheet::SheetTable& table,
@@ -271,10 +287,12 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
     const bool deviation = column.use == SheetColumn::Use::kDeviation;
     if (!wants_unit(column) || !column.unit.empty() || (!deviation && !geometry)) continue;
     if (const std::string& unknown = table.headings[k].unknown_unit; !unknown.empty())
-      throw text::InputError(heading, table.headings[k].text,
-                             fmt::format("[{}] is no known unit; known are {}; convert the values to one of "
-                                         "these units, and correct the heading",
-                                         unknown, format::known_units()));
+      throw text::InputError(
+          heading, table.headings[k].text,
+          fmt::format("[{}] is no known unit; known are {}; state the unit, for example "
+                      "--{} \"{}[{}]={}\", or convert the values to one of these units",
+                      unknown, format::known_units(), deviation ? "deviation" : "column", column.name,
+                      deviation ? "0.01mm" : unit_to_say(column.name, columns), table.headings[k].text));
     const double largest = largest_value(sheet, table, k);
     const std::string unit =
         deviation ? unit_of_deviation(columns, column.name, largest) : unit_to_say(column.name, columns);
@@ -369,6 +387,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   }
   refuse_unclear_signs(columns);
   refuse_magnitudes(sheet, table, columns);
+  refuse_doubtful(columns);
   refuse_without_units(sheet, table, columns, readings, guess);
   if (const std::string empty = measured ? "" : empty_readings(table, columns); !empty.empty())
     throw text::InputError(
@@ -422,8 +441,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
     if (deviation && !moves && still == wishes.constants.end())
       throw text::InputError(
           heading, column.name,
-          fmt::format("this axis has no column: state its position, for example --set \"{}[mm]=0\"",
-                      column.name));
+          fmt::format("this axis has no column: state its position, for example {}", set_position(column)));
     if (deviation && is_angle(position_unit)) {
       made.name = angle_of(column.name, heading);
       made.unit = "deg";

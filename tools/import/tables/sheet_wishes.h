@@ -23,9 +23,11 @@ struct SheetColumn {
   bool to_target = false;  // true for a deviation whose measured position is given, so that the target
                            // position is computed
   bool by_values = false;  // true: the values determined whether the column is a position or a deviation
-  text::Place sign_place = {};  // place of a text that states the sign of this deviation, but not clearly
-  std::string sign_text = {};   // this text; empty: the sign is clear
-  std::string sign_from = {};   // text outside the headings that states the sign of this deviation clearly
+  text::Place sign_place = {};   // place of a text that states the sign of this deviation, but not clearly
+  std::string sign_text = {};    // this text; empty: the sign is clear
+  text::Place doubt_place = {};  // place of a value that contradicts the unit or the direction of this column
+  std::string doubt_word = {}, doubt = {};  // this word, and why the table is refused; empty: no doubt
+  std::string sign_from = {};  // text outside the headings that states the sign of this deviation clearly
 };
 
 /// Description of the columns by the user: assignments by heading or number, constants, and the unit of

@@ -31,7 +31,7 @@ struct RunColumn {
   int sense = 0;
   bool deviation = false, measured = false, turned = false, pos = false;
   bool length = false;    // the sign by the length of the motion: "positiv = zu kurz"
-  bool relative = false;  // the direction by a word that is not about the axis: "hin", "forward"
+  bool relative = false;  // the direction by a word that is not about the axis: "hin", "forward", "up"
 };
 
 enum class Piece { kNone, kNumber, kWord, kSign };
@@ -88,6 +88,11 @@ bool says_relative(const std::string& word) {
   return kWords.contains(word);
 }
 
+/// A direction against gravity, which is not always that of increasing positions.
+bool says_height(const std::string& word) {
+  return word == "up" || word == "down" || word == "auf" || word == "ab";
+}
+
 bool says_run(const std::string& word) {
   static const std::set<std::string> kRunWords = {
       "run",    "runs",  "lauf", "messung", "messlauf", "messreihe",   "durchgang",
@@ -137,12 +142,13 @@ std::optional<RunColumn> run_column(const sheet::Heading& heading) {
       column.run = token.text;
     } else if (token.piece == Piece::kSign) {
       if (!joins(tokens, k)) by_sign = token.text == "\u2013" ? -1 : sense_said(token.text);
+      column.relative |= token.text == "\u2191" || token.text == "\u2193";
     } else if (says_run(small)) {
       said = true;
     } else if (sense_said(small) != 0) {
       if (by_word != 0) return std::nullopt;
       by_word = sense_said(small);
-      column.relative |= says_relative(small);
+      column.relative |= says_relative(small) || says_height(small);
       column.pos |= small == "pos";
     } else if (says_deviation(small)) {
       column.deviation = said = true;

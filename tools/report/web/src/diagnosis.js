@@ -124,7 +124,7 @@ export function candidates(result) {
       .map((p) =>
         typeof p === 'string'
           ? p
-          : `${p.name} = ${number(p.value, 4)}${Number.isFinite(p.std) ? ` ± ${number(p.std, 2)}` : ''} ${p.unit ?? ''}`,
+          : `${p.name} = ${number(p.value, 4)}${Number.isFinite(p.std) ? ` ± ${number(p.std, 2)}` : ''} ${p.unit ?? ''}${p.note ? ` (${p.note})` : ''}`,
       )
       .join('; ');
   const detail = (one) =>
@@ -171,13 +171,14 @@ export function next(result) {
 export function simulated(result) {
   const s = result.simulation;
   if (!s) return null;
-  return tiles([
+  const figures = tiles([
     error('rms without correction, fit rows', s, 'rms_before', true),
     error('rms with correction, fit rows', s, 'rms_after', true),
     error('largest without correction', s, 'max_before'),
     error('largest with correction', s, 'max_after'),
     { label: 'ticks of 1 ms', value: number(s.ticks, 7) },
   ]);
+  return s.note ? [figures, el('p', { class: 'note' }, printed(s.note))] : figures;
 }
 
 /** The residuals before the first and after the last effect. */

@@ -29,10 +29,17 @@ function summary(result) {
 }
 
 function parameterTable(parameters) {
+  const notes = parameters.some((one) => one.note);
   return table(
     'Parameters',
-    [{ name: 'name', left: true }, { name: 'value' }, { name: 'std. uncertainty' }, { name: 'unit', left: true }],
-    parameters.map((one) => [one.name, number(one.value, 6), number(one.std, 2), one.unit ?? '']),
+    [
+      { name: 'name', left: true },
+      { name: 'value' },
+      { name: 'std. uncertainty' },
+      { name: 'unit', left: true },
+      ...(notes ? [{ name: 'meaning', left: true }] : []),
+    ],
+    parameters.map((one) => [one.name, number(one.value, 6), number(one.std, 2), one.unit ?? '', ...(notes ? [one.note ?? ''] : [])]),
   );
 }
 

@@ -240,7 +240,7 @@ export function compareView(root) {
         grid.element,
         el(
           'p',
-          { class: 'note' },
+          { class: 'note hands' },
           'Drag: choose rows, Ctrl adds to the choice. Shift-drag or arrow keys: move. + and − or the wheel (while in focus): zoom. 0 or double click: the whole. Escape: choose nothing.',
         ),
       ),

@@ -143,7 +143,7 @@ export function handoverPanel() {
         : '',
     );
   });
-  return panel(
+  const box = panel(
     'Reports to hand over',
     el('div', { class: 'controls' }, fields, language),
     el(
@@ -186,4 +186,6 @@ export function handoverPanel() {
     links,
     error,
   );
+  box.classList.add('hands'); // on paper nobody presses a button
+  return box;
 }

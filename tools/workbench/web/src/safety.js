@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
-import { number } from '../../../report/web/src/data.js';
+import { number, printed } from '../../../report/web/src/data.js';
 import { getJson } from './api.js';
 import { guarded, pageWords, panel } from './parts.js';
 import { emit, on, store } from './store.js';
@@ -50,8 +50,8 @@ function safetyTable(rules) {
             el('td', { class: 'text' }, `${kAsks[one.rule] ?? one.rule} `, el('small', {}, one.rule)),
             el('td', { class: 'num' }, one.value === null ? '–' : number(one.value, 3)),
             el('td', { class: 'num' }, number(one.limit, 3)),
-            el('td', { class: 'text' }, one.unit),
-            el('td', { class: 'text' }, one.culprit),
+            el('td', { class: 'text' }, printed(one.unit)),
+            el('td', { class: 'text' }, printed(one.culprit)),
             el('td', { class: 'text answer' }, answer(one)),
           ),
         ),

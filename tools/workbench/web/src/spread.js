@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { axisStyle, chart, colours, tooltipStyle } from '../../../report/web/src/chart.js';
-import { number } from '../../../report/web/src/data.js';
+import { number, printed } from '../../../report/web/src/data.js';
 import { el } from '../../../report/web/src/dom.js';
 import { dragged } from './drag.js';
 import { select, selection, store } from './store.js';
@@ -115,5 +115,7 @@ export function spreadWords(group) {
     sum += value;
     squares += value * value;
   }
-  return `${group.kind}: ${group.value.length} readings, mean ${number(sum / group.value.length, 3)}, rms ${number(Math.sqrt(squares / group.value.length), 4)} ${group.unit}`;
+  const rms = Math.sqrt(squares / group.value.length),
+    mean = sum / group.value.length;
+  return `${group.kind}: ${group.value.length} readings, mean ${printed(number(Math.abs(mean) < 1e-6 * rms ? 0 : mean, 3))}, rms ${number(rms, 4)} ${group.unit}`;
 }

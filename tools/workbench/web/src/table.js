@@ -73,5 +73,5 @@ export function rowTable(height) {
     scroll.scrollTop = 0;
     draw();
   });
-  return { element: el('div', {}, el('label', { class: 'choice' }, only, ' only chosen rows'), scroll), draw };
+  return { element: el('div', {}, el('label', { class: 'choice hands' }, only, ' only chosen rows'), scroll), draw };
 }

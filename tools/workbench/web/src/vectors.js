@@ -109,7 +109,10 @@ export function vectorPlot(height, label = 'Residual vectors in the working volu
     ];
     for (let a = 0; a < 8; ++a)
       for (let j = 0; j < 3; ++j) if (!((a >> j) & 1)) pen.line([...place(corner(a)), ...place(corner(a | (1 << j)))], c.line, 1);
+    const most = Math.max(...[0, 1, 2].map((j) => box.high[j] - box.low[j]));
     ['x', 'y', 'z'].forEach((name, j) => {
+      // A direction without extent has its corner on that of the others, and its text would lie over theirs.
+      if (!(box.high[j] - box.low[j] > 1e-3 * most)) return;
       const [x, y] = place(corner(1 << j));
       pen.text(x, y - 8, `${name} ${number(box.high[j], 4)} mm`, { colour: c.soft, align: 'center' });
     });

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/sizes/deviation_sizes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "tools/format/columns.h"
+#include "tools/format/units.h"
+#include "tools/maths/median.h"
+#include "tools/sheet/sheet_number.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+/// Half of the deviations are larger: no machine tool, and hardly a robot, is that wrong.
+constexpr double kSurely_mm = 5;
+/// The same as a share of the travel, if the deviations are larger than kVisible_mm. A scale error of a
+/// twentieth is no error of a machine (kSlope in column_values.cpp).
+constexpr double kImplausibleShare = 0.05, kVisible_mm = 0.5;
+/// A larger deviation is noted: errors of machine tools are below 0.5 mm, those of most robots below 2 mm.
+constexpr double kUnusual_mm = 2;
+/// Ratio of two neighbours in the sorted sizes that only a factor of 1000 or a slipped decimal sign explains.
+constexpr double kGap = 100;
+/// Two columns of one machine whose deviations differ by this ratio do not have the same unit.
+constexpr double kApart = 300;
+/// No instrument of a workshop resolves less.
+constexpr double kResolution_mm = 1e-4;
+constexpr std::size_t kFewestSizes = 3;  // fewer rows show no usual size
+
+/// A column of length deviations in mm, row after row.
+struct Sizes {
+  std::size_t column = 0;
+  std::vector<double> size_mm;    // absolute values
+  std::vector<std::size_t> line;  // their lines in the file
+  double median_mm = 0, largest_mm = 0;
+};
+
+std::optional<double> number_at(const sheet::Sheet& sheet, std::size_t row, std::size_t column) {
+  const auto number = sheet::plain_number(sheet.rows[row][column], sheet.decimal_comma);
+  return number ? text::parse_number(*number) : std::nullopt;
+}
+
+std::optional<format::Unit> length_unit(const SizedColumn& column) {
+  const auto unit = format::find_unit(column.unit);
+  return !column.unit.empty() && unit && unit->dimension == format::Dimension::kLength ? unit : std::nullopt;
+}
+
+std::optional<Sizes> sizes_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                              const std::vector<SizedColumn>& columns, std::size_t k) {
+  const auto unit = length_unit(columns[k]);
+  if (columns[k].use != SizedColumn::Use::kDeviation || !unit) return std::nullopt;
+  Sizes sizes;
+  sizes.column = k;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+    if (const auto value = number_at(sheet, row, k)) {
+      sizes.size_mm.push_back(std::abs(*value) * unit->factor);
+      sizes.line.push_back(sheet.line[row]);
+    }
+  if (sizes.size_mm.size() < kFewestSizes) return std::nullopt;
+  sizes.median_mm = maths::median(sizes.size_mm);
+  sizes.largest_mm = *std::max_element(sizes.size_mm.begin(), sizes.size_mm.end());
+  return sizes;
+}
+
+std::string size_text(double mm) {
+  return mm < 1e-4   ? fmt::format("{:.3g} nm", mm * 1e6)
+         : mm < 0.01 ? fmt::format("{:.3g} um", mm * 1e3)
+                     : fmt::format("{:.3g} mm", mm);
+}
+
+/// What the user does about a wrong unit, and how the unit is confirmed if it is right.
+std::string unit_remedy(const sheet::SheetTable& table, const SizedColumn& column, std::size_t k) {
+  const sheet::Heading& heading = table.headings[k];
+  const std::string wrong = heading.unit.empty()
+                                ? fmt::format("state another unit (--unit, or --deviation \"{}[um]={}\")",
+                                              column.name, heading.text)
+                                : "correct the unit in the heading";
+  return fmt::format("if the unit [{}] is wrong, {}; if it is right, give --deviation \"{}[{}]={}\"",
+                     column.unit, wrong, column.name, column.unit, heading.text);
+}
+
+/// The position column of the axis of a deviation.
+std::optional<std::size_t> positions_of(const std::vector<SizedColumn>& columns, const SizedColumn& one) {
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (columns[k].use == SizedColumn::Use::kPosition && columns[k].name == one.positions &&
+        length_unit(columns[k]))
+      return k;
+  return std::nullopt;
+}
+
+double travel_along(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                    const std::vector<SizedColumn>& columns, std::size_t position) {
+  std::vector<double> at;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+    if (const auto value = number_at(sheet, row, position))
+      at.push_back(*value * length_unit(columns[position])->factor);
+  if (at.empty()) return 0;
+  const auto [least, most] = std::minmax_element(at.begin(), at.end());
+  return *most - *least;
+}
+
+/// What is wrong with the sizes of one column, beside its travel and its other rows; empty: nothing.
+struct SizeVerdict {
+  bool refuse = false;
+  std::size_t line = 0;  // 0: of the heading
+  std::string words;
+};
+
+SizeVerdict beside_other_rows(const Sizes& sizes) {
+  std::vector<double> sorted = sizes.size_mm;
+  std::erase_if(sorted, [](double one) { return one == 0; });
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    // A few small values among large ones are near a zero of the error.
+    const bool usual = i >= 2 && 4 * i >= sorted.size();
+    if (!usual || sorted[i] < kVisible_mm || sorted[i] < kGap * sorted[i - 1]) continue;
+    const auto at = std::find_if(sizes.size_mm.begin(), sizes.size_mm.end(),
+                                 [&](double one) { return one >= sorted[i]; });
+    const std::size_t row = static_cast<std::size_t>(at - sizes.size_mm.begin()), many = sorted.size() - i;
+    return {true, sizes.line[row],
+            fmt::format("the deviation {} in this row{} is more than {} times as large as the other ones (at "
+                        "most {}): correct the cell or its unit",
+                        size_text(*at),
+                        many > 1 ? fmt::format(" (and in {} more)", std::to_string(many - 1)) : "", kGap,
+                        size_text(sorted[i - 1]))};
+  }
+  return {};
+}
+
+SizeVerdict beside_travel(const Sizes& sizes, double travel_mm, const std::string& axis) {
+  const std::string along =
+      travel_mm > 0 ? fmt::format(", and {} moves by {}", axis, size_text(travel_mm)) : "";
+  const bool share =
+      travel_mm > 0 && sizes.median_mm > kImplausibleShare * travel_mm && sizes.median_mm > kVisible_mm;
+  if (sizes.median_mm > kSurely_mm || share)
+    return {true, 0,
+            fmt::format("half of the deviations are larger than {}{}: no machine has such errors",
+                        size_text(sizes.median_mm), along)};
+  if (sizes.largest_mm > kUnusual_mm)
+    return {false, 0,
+            fmt::format("the deviations are as large as {}{}: unusual for a machine",
+                        size_text(sizes.largest_mm), along)};
+  if (sizes.largest_mm > 0 && sizes.largest_mm < kResolution_mm)
+    return {false, 0,
+            fmt::format("all deviations are below {}, less than an instrument resolves",
+                        size_text(kResolution_mm))};
+  return {};
+}
+
+/// Runs of one column, one of which has another unit: run 1 in um and run 2 in mm.
+SizeVerdict beside_other_runs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                              const std::vector<SizedColumn>& columns, const Sizes& sizes) {
+  const auto run = std::find_if(columns.begin(), columns.end(), [](const SizedColumn& one) {
+    return one.use != SizedColumn::Use::kDeviation && one.name == format::columns::kRun;
+  });
+  if (run == columns.end()) return {};
+  const std::size_t of_run = static_cast<std::size_t>(run - columns.begin());
+  std::map<std::string, Sizes> runs;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    if (!number_at(sheet, row, sizes.column)) continue;
+    Sizes& one = runs[sheet.rows[row][of_run]];
+    one.size_mm.push_back(std::abs(*number_at(sheet, row, sizes.column)) *
+                          length_unit(columns[sizes.column])->factor);
+    one.line.push_back(sheet.line[row]);
+  }
+  for (auto& [name, one] : runs) one.median_mm = maths::median(one.size_mm);
+  for (const auto& [name, one] : runs)
+    for (const auto& [larger, other] : runs) {
+      const bool enough = one.size_mm.size() >= kFewestSizes && other.size_mm.size() >= kFewestSizes;
+      if (!enough || one.median_mm <= 0 || other.median_mm < kApart * one.median_mm) continue;
+      return {true, one.line.front(),
+              fmt::format("the deviations of run {} are about {}, those of run {} about {}: the two runs do "
+                          "not have the same unit",
+                          name, size_text(one.median_mm), larger, size_text(other.median_mm))};
+    }
+  return {};
+}
+
+/// Positions in a smaller unit than their deviations: the units of the two headings are exchanged.
+bool exchanged(const std::vector<SizedColumn>& columns, std::size_t deviation, std::size_t position) {
+  return length_unit(columns[position])->factor < length_unit(columns[deviation])->factor;
+}
+
+}  // namespace
+
+std::vector<SizeDoubt> judge_deviation_sizes(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                             const std::vector<SizedColumn>& columns) {
+  std::vector<SizeDoubt> doubts;
+  std::vector<Sizes> all;
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (auto sizes = sizes_of(sheet, table, columns, k)) all.push_back(std::move(*sizes));
+  const std::size_t heading_line = sheet.line[table.heading_row];
+  const auto say = [&](std::size_t k, const SizeVerdict& verdict) {
+    if (verdict.words.empty()) return;
+    const std::string text = fmt::format("{}; {}", verdict.words, unit_remedy(table, columns[k], k));
+    if (verdict.refuse && !columns[k].stated) {
+      const bool known =
+          std::any_of(doubts.begin(), doubts.end(), [&](const auto& one) { return one.column == k; });
+      if (!known) doubts.push_back({k, verdict.line > 0 ? verdict.line : heading_line, text});
+      return;
+    }
+    sheet.notes.push_back(
+        fmt::format("\"{}\"{}: {}", table.headings[k].text,
+                    verdict.line > 0 ? fmt::format(", line {}", std::to_string(verdict.line)) : "",
+                    verdict.refuse ? verdict.words : text));
+  };
+  for (const Sizes& sizes : all) {
+    const std::size_t k = sizes.column;
+    const auto position = positions_of(columns, columns[k]);
+    const double travel_mm = position ? travel_along(sheet, table, columns, *position) : 0;
+    SizeVerdict verdict = beside_other_runs(sheet, table, columns, sizes);
+    if (verdict.words.empty()) verdict = beside_other_rows(sizes);
+    if (verdict.words.empty()) verdict = beside_travel(sizes, travel_mm, columns[k].name);
+    if (position && exchanged(columns, k, *position)) {
+      verdict.refuse = sizes.median_mm > kImplausibleShare * travel_mm;
+      verdict.line = 0;
+      verdict.words = fmt::format(
+          "the positions \"{}\" are in the smaller unit [{}] and their deviations in [{}]{}: the units of "
+          "the two headings are probably exchanged",
+          table.headings[*position].text, columns[*position].unit, columns[k].unit,
+          travel_mm > 0 ? fmt::format(", so {} would move by {} only", columns[k].name, size_text(travel_mm))
+                        : "");
+    }
+    say(k, verdict);
+  }
+  for (const Sizes& one : all)
+    for (const Sizes& other : all) {
+      if (one.median_mm <= 0 || other.median_mm < kApart * one.median_mm || one.largest_mm > kResolution_mm)
+        continue;
+      say(one.column,
+          {true, 0,
+           fmt::format("the deviations are about {}, those of \"{}\" about {}: the two columns cannot both "
+                       "have the right unit",
+                       size_text(one.median_mm), table.headings[other.column].text,
+                       size_text(other.median_mm))});
+    }
+  return doubts;
+}
+
+void note_decimal_parts(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                        const std::vector<SizedColumn>& columns) {
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const std::string& unit = columns[k].unit;
+    if (unit != "0.1mm" && unit != "0.01mm" && unit != "0.0001in") continue;
+    const std::string small = text::in_small_letters(table.headings[k].text);
+    const bool tenths = unit == "0.0001in" && small.find("tenth") != std::string::npos;
+    sheet.notes.push_back(fmt::format(
+        "\"{}\": one unit is {}{}", table.headings[k].text,
+        unit == "0.0001in" ? "0.0001 inch (2.54 um)"
+        : unit == "0.1mm"  ? "0.1 mm"
+                           : "0.01 mm (10 um)",
+        tenths ? ", a tenth of a thousandth of an inch; for tenths of a millimetre write [0.1 mm] "
+                 "in the heading"
+               : ""));
+  }
+}
+
+}  // namespace vernier::importer
