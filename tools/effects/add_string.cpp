@@ -273,14 +273,18 @@ class AddReader {
 
   static bool acts_at_one(const EffectForm& form) {
     return form.place != PlaceRule::kEachAxis && form.place != PlaceRule::kPair &&
-           form.place != PlaceRule::kNormal && form.place != PlaceRule::kSeveral;
+           form.place != PlaceRule::kNormal && form.place != PlaceRule::kPoint &&
+           form.place != PlaceRule::kSeveral;
   }
 
   void fill_place() {
     const bool needs_axis = choice_.form->asks_for("q") || choice_.form->asks_for("hats");
     if (needs_axis && !choice_.axis) choice_.axis = default_axis_;
-    if (choice_.form->place == PlaceRule::kSeveral) {
-      if (dof_) fail(*dof_, "the term names the degrees of freedom; do not give dof");
+    if (choice_.form->place == PlaceRule::kSeveral || choice_.form->place == PlaceRule::kPoint) {
+      if (dof_)
+        fail(*dof_, choice_.form->place == PlaceRule::kPoint
+                        ? "this form acts at the three lengths of the transform; do not give dof"
+                        : "the term names the degrees of freedom; do not give dof");
       choice_.place = transform_;
       if (!choice_.place) fail(id_, "the location of the effect is missing: give branch and transform");
       return;
@@ -378,7 +382,8 @@ std::string add_string(const model::Machine& machine, const Choice& c) {
   if (c.place) {
     put("branch", c.place->workpiece ? "workpiece" : "tool");
     put("transform", std::to_string(transform_at(machine, *c.place).n));
-    if (!c.effect->has_found_terms()) put("dof", dof_name(machine, *c.place));
+    const bool several = c.effect->has_found_terms() || c.form->place == PlaceRule::kPoint;
+    if (!several) put("dof", dof_name(machine, *c.place));
   }
   if (c.reference) put("reference", text::number_text(*c.reference));
   for (std::size_t i = 0; i < c.units.size(); ++i)

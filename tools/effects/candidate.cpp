@@ -168,6 +168,14 @@ class Maker {
               {base[i], form[0], std::nullopt, base[i].workpiece, format::columns::kNormal.at(i)});
         break;
       }
+      case PlaceRule::kPoint:
+        if (!choice_.place) missing("branch or transform");
+        if (transform_at(machine_, *choice_.place).kind != model::TransformKind::kSixDof)
+          missing("a transform `sixdof`, because the effect acts at three lengths,");
+        for (std::size_t d = 0; d < 3; ++d)
+          terms.push_back(
+              {{choice_.place->workpiece, choice_.place->transform, d}, form.at(d), std::nullopt});
+        break;
       case PlaceRule::kSeveral:
         return found_terms();
       case PlaceRule::kBend:
@@ -342,7 +350,9 @@ class Maker {
     if (order.empty()) missing("an unknown in the term");
     const std::string stem = name_stem();
     for (const std::string& rule : order) {
-      const std::string first = order.size() == 1 ? stem : stem + "_" + rule;
+      const std::string first = order.size() == 1                          ? stem
+                                : choice_.form->place == PlaceRule::kPoint ? name_at(first_place(terms, rule))
+                                                                           : stem + "_" + rule;
       std::string name = first;
       for (int suffix = 2; !is_free(name); ++suffix) name = first + "_" + std::to_string(suffix);
       taken_.insert(name);
@@ -407,6 +417,12 @@ class Maker {
     return text;
   }
 
+  /// Returns the name of the coefficient of a point at one of its lengths.
+  std::string name_at(const DofPlace& place) const {
+    return fmt::format("{}_{}{}", plain(choice_.effect->id), dof_name(machine_, place),
+                       transform_at(machine_, place).n);
+  }
+
   std::string name_stem() const {
     std::string stem = plain(choice_.effect->id);
     if (choice_.axis) stem += "_" + machine_.axes[*choice_.axis].name;
@@ -425,6 +441,9 @@ class Maker {
     if (choice_.axis2) text += " and " + machine_.axes[*choice_.axis2].name;
     for (std::size_t i = 0; i < choice_.inputs.size(); ++i)
       text += (i == 0 ? " with " : choice_.effect->has_found_terms() ? " and " : " - ") + choice_.inputs[i];
+    if (choice_.form->place == PlaceRule::kPoint)
+      text += fmt::format(" of the point at {}transform {}", choice_.place->workpiece ? "workpiece " : "",
+                          transform_at(machine_, *choice_.place).n);
     if (choice_.place && result_.terms.size() == 1)
       text +=
           fmt::format(" in {} of {}transform {}", dof_name(machine_, *choice_.place),

@@ -18,9 +18,9 @@ extern const char* const kBuiltInCatalogue;  // the text of catalogue.txt
 
 namespace {
 
-constexpr std::array<const char*, 15> kPlaceNames = {"own",  "cross",    "turn", "length", "angle",
-                                                     "base", "baseturn", "sag",  "joint",  "link",
-                                                     "bend", "each",     "pair", "normal", "several"};
+constexpr std::array<const char*, 16> kPlaceNames = {"own",      "cross",  "turn",  "length", "angle", "base",
+                                                     "baseturn", "sag",    "joint", "link",   "bend",  "each",
+                                                     "pair",     "normal", "point", "several"};
 
 /// N of "hats N".
 std::optional<std::size_t> hats_of(const std::string& mark) {
@@ -241,9 +241,12 @@ class CatalogueReader {
   /// Returns the unknowns that a form uses. Throws if its term contains something that a term may
   /// not contain.
   std::set<std::string> unknowns_of(const Effect& effect, const EffectForm& form, std::size_t line) const {
-    if ((form.trees.size() == 2) != (form.place == PlaceRule::kPair))
-      fail_at(line, form.term,
-              "a form with the location `pair` has two terms separated by |, every other form has one term");
+    const std::size_t terms = form.place == PlaceRule::kPair ? 2 : form.place == PlaceRule::kPoint ? 3 : 1;
+    if (form.trees.size() != terms)
+      fail_at(
+          line, form.term,
+          "a form with the location `pair` has two terms separated by |, one with the location `point` has "
+          "three, every other form has one term");
     std::set<std::string> used;
     for (const model::ExprPtr& tree : form.trees)
       model::walk(*tree, [&](const model::Expr& node) {
@@ -281,10 +284,10 @@ std::vector<std::string> marks_in(const std::string& name) {
 }
 
 void read_term(EffectForm& form) {
-  // No label of a run is in a catalogue, so a bar separates the terms of a pair.
-  const auto bar = form.term.find('|');
-  form.trees = {model::parse_template(form.term.substr(0, bar))};
-  if (bar != std::string::npos) form.trees.push_back(model::parse_template(form.term.substr(bar + 1)));
+  // No label of a run is in a catalogue, so a bar separates the terms of a pair or of a point.
+  form.trees.clear();
+  std::istringstream terms(form.term);
+  for (std::string term; std::getline(terms, term, '|');) form.trees.push_back(model::parse_template(term));
   for (const model::ExprPtr& tree : form.trees)
     model::walk(*tree, [&](const model::Expr& node) {
       if (node.op != model::Op::kSymbol) return;

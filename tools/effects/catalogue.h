@@ -30,7 +30,8 @@ enum class PlaceRule : std::uint8_t {
   kEachAxis,  // the own degrees of freedom of all axes together, with one coefficient
   kPair,      // the own degrees of freedom of two linear axes together
   kNormal,    // the three lengths of the measuring frame together, along nx ny nz
-  kSeveral,   // degrees of freedom of one transform together; a search finds the term of each
+  kPoint,    // the three lengths of a constant `sixdof` behind all axes of its branch together (a tool point)
+  kSeveral,  // degrees of freedom of one transform together; a search finds the term of each
 };
 
 /// Method that finds the values of a form's unknowns.
@@ -72,7 +73,7 @@ struct EffectForm {
   PlaceRule place = PlaceRule::kOwn;
   std::string term;
   bool rare = false;                  // true: this form is less frequent than the other forms of the effect
-  std::vector<model::ExprPtr> trees;  // the parsed term: one tree, or two trees for a pair
+  std::vector<model::ExprPtr> trees;  // the parsed term: one tree, two for a pair, three for a point
   std::set<std::string> marks;        // names of the placeholders: q, T, hats ...
   std::size_t hats = 0;               // N of {hats N}
 

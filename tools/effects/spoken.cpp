@@ -110,6 +110,8 @@ std::string spoken_name(const model::Machine& machine, const AxisPlaces& axes, c
   if (choice.axis && choice.axis2)
     return fmt::format("{} and {}: {}{}", machine.axes[*choice.axis].name, machine.axes[*choice.axis2].name,
                        what, with);
+  if (choice.form->place == PlaceRule::kPoint)
+    return fmt::format("{}: {} of the point", part_name(machine, axes, *choice.place), what);
   if (choice.effect->has_found_terms())
     return fmt::format("{}: {}{}", part_name(machine, axes, *choice.place), what, with);
   if (candidate.terms.size() != 1) return what + with;

@@ -37,11 +37,15 @@ Json axis_json(const effects::Candidate& candidate, std::optional<std::size_t> a
   return axis && !candidate.choice.axis2 ? Json(machine.axes[*axis].name) : Json(nullptr);
 }
 
-/// Transform and degree of freedom; null for a term at several locations.
+/// Transform and degree of freedom; null for a term at several of them.
 void add_place(Json& json, const effects::Candidate& candidate, const model::Machine& machine) {
   const bool one = candidate.terms.size() == 1;
   const effects::DofPlace& place = candidate.terms[0].place;
-  json["transform"] = one ? Json(effects::transform_at(machine, place).n) : Json(nullptr);
+  const bool one_transform =
+      std::all_of(candidate.terms.begin(), candidate.terms.end(), [&](const effects::CandidateTerm& term) {
+        return term.place.workpiece == place.workpiece && term.place.transform == place.transform;
+      });
+  json["transform"] = one_transform ? Json(effects::transform_at(machine, place).n) : Json(nullptr);
   json["dof"] = one ? Json(effects::dof_name(machine, place)) : Json(nullptr);
 }
 

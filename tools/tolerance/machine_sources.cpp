@@ -224,6 +224,7 @@ class Namer {
         return angle;
       case effects::PlaceRule::kJoint:
         return own && machine_.axes[*axis].rotary;
+      case effects::PlaceRule::kPoint:
       case effects::PlaceRule::kSeveral:
       case effects::PlaceRule::kNormal:
         return !angle;

@@ -127,6 +127,16 @@ TEST(AddString, AResponseMayHaveFiveThermometers) {
   EXPECT_EQ(add_string(small(), one.choice), add);
 }
 
+TEST(AddString, APointHasItsThreeLengths) {
+  const std::string add = "offset:branch=tool,transform=2,form=point";
+  const Candidate one = candidate(add);
+  ASSERT_EQ(one.terms.size(), 3u);
+  EXPECT_EQ(one.terms[0].text, "offset_X2");
+  EXPECT_EQ(one.terms[1].text, "offset_Y2");
+  EXPECT_EQ(one.terms[2].text, "offset_Z2");
+  EXPECT_EQ(add_string(small(), one.choice), add);
+}
+
 TEST(AddString, StartsAreTakenFromItAlone) {
   const Candidate cyclic = candidate("cyclic-error:axis=X,form=plain,start.p=10");
   std::size_t periods = 0;
@@ -159,6 +169,8 @@ TEST(AddString, BadOnesNameTheWord) {
                          Bad{"backlash:axis=X,dof=theta", "\"theta\""},
                          Bad{"offset:branch=tool,transform=5,dof=rX", "\"rX\""},
                          Bad{"offset", "\"offset\""},
+                         Bad{"offset:branch=tool,transform=2,dof=X,form=point", "\"X\""},
+                         Bad{"offset:branch=tool,transform=5,form=point", "sixdof"},
                          Bad{"squareness:axis=X", "\"squareness\""},
                          Bad{"thermal-scale:axis=X", "\"thermal-scale\""},
                          Bad{"thermal-scale:axis=X,input=2nd", "\"2nd\""},

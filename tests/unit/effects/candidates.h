@@ -70,6 +70,9 @@ inline std::vector<DofPlace> places_for(const Machine& machine, const EffectForm
       case PlaceRule::kBend:
         admitted = transform_at(machine, place).kind == TransformKind::kSixDof && place.dof == 4;
         break;
+      case PlaceRule::kPoint:
+        admitted = transform_at(machine, place).kind == TransformKind::kSixDof && place.dof == 0;
+        break;
       default:
         admitted = true;
     }

@@ -12,6 +12,7 @@
 
 #include "tools/diagnose/propose/pulls.h"
 #include "tools/effects/probe.h"
+#include "tools/maths/orthonormal.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/chain/chain_rows.h"
 #include "tools/model/chain/evaluate.h"
@@ -379,6 +380,12 @@ class Enumerator {
       case effects::PlaceRule::kNormal:
         if (has_normals_ && !effects::base_places(machine_).empty()) with_sum(choice);
         break;
+      case effects::PlaceRule::kPoint:
+        for (const effects::DofPlace& place : points()) {
+          choice.place = place;
+          with_sum(choice);
+        }
+        break;
       case effects::PlaceRule::kEachAxis:
       case effects::PlaceRule::kPair:
         with_sum(choice);
@@ -386,6 +393,30 @@ class Enumerator {
       case effects::PlaceRule::kSeveral:
         break;
     }
+  }
+
+  /// Returns the tool point, or the point on the workpiece, if the readings show its place only together with
+  /// free parameters of the model (the zero and the length of the last joint). One length of it alone would
+  /// leave the whole error of the others in these parameters.
+  std::vector<effects::DofPlace> points() const {
+    std::vector<effects::DofPlace> found;
+    for (const bool workpiece : {false, true}) {
+      const std::vector<model::Transform>& branch = workpiece ? machine_.workpiece : machine_.tool;
+      if (branch.empty() || branch.back().kind != model::TransformKind::kSixDof) continue;
+      const effects::DofPlace last{workpiece, branch.size() - 1, 0};
+      if (axes_.axis_of(last) || effects::is_stand_in(machine_, last)) continue;
+      Eigen::MatrixXd columns(evidence_.residual().size(), 3);
+      for (std::size_t d = 0; d < 3; ++d)
+        columns.col(static_cast<Eigen::Index>(d)) =
+            evidence_.response(evidence_.index_of({workpiece, last.transform, d}));
+      const Eigen::VectorXd before = columns.colwise().norm();
+      columns -= evidence_.absorbed() * (evidence_.absorbed().transpose() * columns);
+      for (Eigen::Index d = 0; d < 3; ++d)
+        if (columns.col(d).norm() <= evidence_.thresholds().shape.own * before[d]) columns.col(d).setZero();
+      const Eigen::Index own = maths::orthonormal(columns, evidence_.thresholds().shape.own, nullptr).cols();
+      if (own > 0 && own < 3) found.push_back(last);
+    }
+    return found;
   }
 
   /// Effects on lengths (thermal growth, squareness) do not apply to rotary axes.
@@ -521,7 +552,8 @@ class Enumerator {
     for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(item.candidate))
       item.grid.push_back(grid_of(choice, *choice.effect->find_unknown(unknown.rule)));
     item.most_driven = thresholds_.driven_out;
-    item.may_lose_columns = choice.form->asks_for("hats") || choice.runs.size() > 1;
+    item.may_lose_columns = choice.form->asks_for("hats") || choice.runs.size() > 1 ||
+                            choice.form->place == effects::PlaceRule::kPoint;
     add_fine_periods(item);
     list_.push_back(std::move(item));
   }

@@ -22,6 +22,7 @@ double rank_of_place(effects::PlaceRule place) {
     case effects::PlaceRule::kNormal:
     case effects::PlaceRule::kBase:
     case effects::PlaceRule::kJoint:
+    case effects::PlaceRule::kPoint:
       return 2;
     case effects::PlaceRule::kTurn:
     case effects::PlaceRule::kBaseTurn:
