@@ -397,6 +397,37 @@ TEST(Challenges, OfOthersDoNotUseUpTheOperatorsOne) {
       << "of another connection";
 }
 
+// The gate keeps a challenge for ten seconds, and 48 of them. A signed request has at least the byte of its
+// op.
+TEST(Challenges, AreValidToTheEndOfTheirTimeAndOfTheTable) {
+  const SigningKey key = new_key();
+  const BoardIdentity identity(key.public_part());
+  constexpr Caller kOperator{1, 1};
+  const auto status_after = [&](std::int64_t time_us, std::uint64_t others) {
+    Gate gate(identity, Nonce{1}, ChallengeSeed{1});
+    const auto request = signed_hold(key, gate.challenge(LinkAccess::kCommand, kOperator, TimeUs(7)));
+    for (std::uint64_t i = 0; i < others; ++i) gate.challenge(LinkAccess::kCommand, {1, 2 + i}, TimeUs(8));
+    return gate
+        .open(request.data(), static_cast<std::uint32_t>(request.size()), LinkAccess::kCommand, kOperator,
+              TimeUs(7 + time_us))
+        .status;
+  };
+  EXPECT_EQ(status_after(0, 0), LinkStatus::kDone);
+  EXPECT_EQ(status_after(10'000'000, 0), LinkStatus::kDone) << "exactly ten seconds";
+  EXPECT_EQ(status_after(10'000'001, 0), LinkStatus::kStale);
+  EXPECT_EQ(status_after(10, 47), LinkStatus::kDone) << "the table is full";
+  EXPECT_EQ(status_after(10, 48), LinkStatus::kStale) << "the oldest was removed";
+  Gate gate(identity, Nonce{1}, ChallengeSeed{1});
+  const auto request = signed_hold(key, gate.challenge(LinkAccess::kCommand, kOperator, TimeUs(0)));
+  constexpr std::uint32_t kHead = kRequestHeaderBytes + sizeof(SignedRequest);
+  const auto status_of = [&](std::uint32_t size) {
+    return gate.open(request.data(), size, LinkAccess::kCommand, kOperator, TimeUs(0)).status;
+  };
+  EXPECT_EQ(status_of(kHead - 1), LinkStatus::kBadLength);
+  EXPECT_EQ(status_of(kHead), LinkStatus::kBadLength) << "no op";
+  EXPECT_EQ(status_of(kHead + 1), LinkStatus::kBadSignature) << "an op, which was signed with its payload";
+}
+
 TEST(SignedRequests, AreTakenForTheRightsOfTheirKeyUntilItIsRetired) {
   const auto status = [](const TrustedKey& rights, LinkOp op) {
     const SigningKey key = new_key();
