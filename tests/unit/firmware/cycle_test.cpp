@@ -416,5 +416,113 @@ TEST(Cycle, EndOfAnOutputIsToldAndAchievedIsWhatItGives) {
   EXPECT_NE(cycle.limits(0) & kAtOutputLimit, 0);
 }
 
+/// A board whose axes and inputs give what the test says.
+struct GivenDevices : AxisReader, InputReader, CorrectionWriter {
+  void begin_tick() noexcept override {}
+  HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override {
+    ++axis_reads[axis];
+    reading.velocity = AxisSpeed(speed[axis]);
+    return HalFault::kNone;
+  }
+  HalFault read_path(PathReading& reading) noexcept override { return reading = {}, HalFault::kNone; }
+  bool gives_motion() const noexcept override { return true; }
+  HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override {
+    ++input_reads[input];
+    value = InputMicro(given);
+    return HalFault::kNone;
+  }
+  HalFault write_correction(std::uint32_t, AxisTravel) noexcept override { return HalFault::kNone; }
+  int axis_reads[kMaxAxes] = {}, input_reads[kMaxInputs] = {};
+  std::int64_t speed[kMaxAxes] = {}, given = 0;
+};
+
+/// A cycle of given devices and a program that reads `of_axes` of `axes` and `of_inputs` of `inputs`.
+struct GivenBench {
+  GivenBench(std::uint32_t axes, std::uint32_t of_axes, std::uint32_t inputs, std::uint32_t of_inputs,
+             const CycleLimits& limits = {}) {
+    Wiring wiring;
+    for (std::uint32_t i = 0; i < axes; ++i) wiring.axes.push_back({"X", i + 1 == axes && axes > 3});
+    for (std::uint32_t i = 0; i < inputs; ++i) wiring.inputs.push_back("T");
+    cycle = std::make_unique<Cycle>(wiring, TimeUs(1000), Board{clock, devices, devices, devices}, limits);
+    for (std::uint32_t i = 0; i < kMaxAxes; ++i) bound->axis[i] = i;
+    for (std::uint32_t i = 0; i < kMaxInputs; ++i) bound->input[i] = i, bound->reads_input[i] = i < of_inputs;
+    bound->program.axis_count = of_axes;
+    bound->program.input_count = of_inputs;
+    cycle->use(*bound);
+  }
+  void tick() { cycle->tick(TimeUs(time += 1000), Command::kNone); }
+  GivenDevices devices;
+  SimClock clock;
+  std::unique_ptr<BoundProgram> bound = std::make_unique<BoundProgram>();
+  std::unique_ptr<Cycle> cycle;
+  std::int64_t time = 0;
+};
+
+TEST(Cycle, EachAxisAndInputIsReadOnceATickWhateverTheProgramReads) {
+  for (const std::uint32_t devices : {1u, 2u, 5u, kMaxAxes})
+    for (std::uint32_t read = 0; read <= devices; ++read) {
+      GivenBench bench(devices, read, devices, read);
+      for (int i = 0; i < 3; ++i) bench.tick();
+      for (std::uint32_t i = 0; i < kMaxAxes; ++i) {
+        EXPECT_EQ(bench.devices.axis_reads[i], i < devices ? 3 : 0) << devices << " " << read << " " << i;
+        EXPECT_EQ(bench.devices.input_reads[i], i < devices ? 3 : 0) << devices << " " << read << " " << i;
+      }
+    }
+}
+
+// A speed counts up to 1 m/s; the last of more than three axes is rotary here.
+TEST(Cycle, FeedOfTheAxesIsTheRootRoundedDownAndEachSpeedIsLimited) {
+  struct {
+    std::uint32_t axes;
+    std::int64_t speed[kMaxAxes], root;
+  } const cases[] = {
+      {2, {3'000'000, -4'000'000}, 5'000'000},
+      {2, {1, 1}, 1},
+      {2, {2, 2}, 2},
+      {1, {999'999'999}, 999'999'999},
+      {1, {1'000'000'000}, 1'000'000'000},
+      {1, {1'000'000'001}, 1'000'000'000},
+      {1, {-1'000'000'001}, 1'000'000'000},
+      {1, {INT64_MIN}, 1'000'000'000},
+      {4, {7, 0, 0, 1'000'000}, 7},
+      {8,
+       {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX},
+       2'645'751'311}};  // the root of 7 m/s
+  for (const auto& wanted : cases) {
+    GivenBench bench(wanted.axes, 0, 0, 0);
+    std::copy_n(wanted.speed, kMaxAxes, bench.devices.speed);
+    bench.tick();
+    EXPECT_EQ(bench.cycle->path().feed.count, 60 * wanted.root) << wanted.axes << " " << wanted.speed[0];
+  }
+}
+
+TEST(Cycle, StepOfAnInputAtTheLimitIsPlausibleAndOneMoreIsNot) {
+  struct {
+    std::int64_t before, after, step;
+    bool jumps;
+  } const cases[] = {{0, 1000, 1000, false},
+                     {0, 1001, 1000, true},
+                     {0, -1000, 1000, false},
+                     {0, -1001, 1000, true},
+                     {INT64_MIN, -1, INT64_MAX, false},
+                     {INT64_MIN, 0, INT64_MAX, true},
+                     {INT64_MAX, 0, INT64_MAX, false},
+                     {INT64_MAX, INT64_MIN, INT64_MAX, true}};
+  for (const auto& wanted : cases) {
+    CycleLimits limits;
+    limits.input[0].low = INT64_MIN, limits.input[0].high = INT64_MAX, limits.input[0].step = wanted.step;
+    GivenBench bench(1, 1, 1, 1, limits);
+    bench.devices.given = wanted.before;
+    bench.tick();
+    EXPECT_EQ(bench.cycle->health().implausible, 0u) << "the first has none before it";
+    bench.devices.given = wanted.after;
+    bench.tick();
+    EXPECT_EQ(bench.cycle->health().implausible, wanted.jumps ? 1u : 0u)
+        << wanted.before << " " << wanted.after;
+    bench.tick();
+    EXPECT_EQ(bench.cycle->health().implausible, wanted.jumps ? 1u : 0u) << "a jump is counted once";
+  }
+}
+
 }  // namespace
 }  // namespace vernier::cycle_test

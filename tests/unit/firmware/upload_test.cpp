@@ -671,6 +671,13 @@ TEST_F(Upload, LinesThatNoCacheHoldsAreWorkToo) {
   EXPECT_FALSE((WorkBudget{work, 7}.covers(program, {})));
   EXPECT_TRUE((WorkBudget{work + 7 * lines, 7}.covers(program, {})));
   EXPECT_FALSE((WorkBudget{work + 7 * lines - 1, 7}.covers(program, {})));
+  // AND a line costs 2^30 at most
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 30;
+  for (const std::uint64_t price : {kMost, kMost + 1, UINT64_MAX}) {
+    EXPECT_TRUE((WorkBudget{work + kMost * lines, price}.covers(program, {}))) << price;
+    EXPECT_FALSE((WorkBudget{work + kMost * lines - 1, price}.covers(program, {}))) << price;
+  }
+  EXPECT_TRUE((WorkBudget{work + (kMost - 1) * lines, kMost - 1}.covers(program, {})));
   // AND even stations need no search
   look_up.table.grid_multiplier = 1;
   EXPECT_LE(lines_of(program.equation), 2u);
