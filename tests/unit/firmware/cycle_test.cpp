@@ -424,7 +424,7 @@ struct GivenDevices : AxisReader, InputReader, CorrectionWriter {
     reading.velocity = AxisSpeed(speed[axis]);
     return HalFault::kNone;
   }
-  HalFault read_path(PathReading& reading) noexcept override { return reading = {}, HalFault::kNone; }
+  HalFault read_path(PathReading& reading) noexcept override { return reading = path, path_fault; }
   bool gives_motion() const noexcept override { return true; }
   HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override {
     ++input_reads[input];
@@ -434,6 +434,8 @@ struct GivenDevices : AxisReader, InputReader, CorrectionWriter {
   HalFault write_correction(std::uint32_t, AxisTravel) noexcept override { return HalFault::kNone; }
   int axis_reads[kMaxAxes] = {}, input_reads[kMaxInputs] = {};
   std::int64_t speed[kMaxAxes] = {}, given = 0;
+  PathReading path;
+  HalFault path_fault = HalFault::kNone;
 };
 
 /// A cycle of given devices and a program that reads `of_axes` of `axes` and `of_inputs` of `inputs`.
@@ -522,6 +524,59 @@ TEST(Cycle, StepOfAnInputAtTheLimitIsPlausibleAndOneMoreIsNot) {
     bench.tick();
     EXPECT_EQ(bench.cycle->health().implausible, wanted.jumps ? 1u : 0u) << "a jump is counted once";
   }
+}
+
+TEST(Cycle, PathOfTheControllerIsTakenAndKeptWhileItGivesNone) {
+  GivenBench bench(2, 0, 0, 0);
+  bench.devices.speed[0] = 1000;
+  bench.devices.path.feed = FeedNmPerMin(7'000'000), bench.devices.path.tells_feed = true;
+  bench.devices.path.curvature = CurvatureNanoPerMm(12);
+  bench.tick();
+  EXPECT_EQ(bench.cycle->path().feed, FeedNmPerMin(7'000'000));
+  EXPECT_EQ(bench.cycle->path().curvature, CurvatureNanoPerMm(12));
+  bench.devices.path.feed = FeedNmPerMin(8'000'000), bench.devices.path.curvature = CurvatureNanoPerMm(13);
+  bench.devices.path_fault = HalFault::kNoReading;
+  bench.tick();
+  EXPECT_EQ(bench.cycle->path().feed, FeedNmPerMin(7'000'000)) << "no reading";
+  EXPECT_EQ(bench.cycle->path().curvature, CurvatureNanoPerMm(12));
+  bench.devices.path_fault = HalFault::kNone;
+  bench.tick();
+  EXPECT_EQ(bench.cycle->path().feed, FeedNmPerMin(8'000'000));
+}
+
+/// Two thermometers at temperatures that the test gives.
+struct TwoTemperatures : InputReader {
+  HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override {
+    return value = InputMicro(1'000'000 * degC[input]), HalFault::kNone;
+  }
+  std::int64_t degC[2] = {20, 20};
+};
+
+// Y grows by 1e-4 for each degree of each of the two.
+TEST(Cycle, EachInputOfTheProgramActsOnTheCorrection) {
+  const auto image = image_with_two_inputs();
+  const auto correction_nm = [&](std::int64_t first_degC, std::int64_t second_degC) {
+    Roaming motion({{0, 600'000'000}, {100'000'000, 200'000'000}}, {}, TimeUs(1000), 0.1, 1);
+    SimPlant plant(motion, 2, 0, {});
+    plant.release();
+    SimClock clock;
+    TwoTemperatures inputs;
+    inputs.degC[0] = first_degC, inputs.degC[1] = second_degC;
+    Cycle cycle(image->view, Board{clock, plant, inputs, plant}, CycleLimits{});
+    for (int tick = 1; tick <= 3000; ++tick) {
+      plant.advance();
+      const bool ready = cycle.mode() == Mode::kReady && cycle.weight() == WeightQ16{};
+      cycle.tick(TimeUs(1000 * tick), ready ? Command::kActivate : Command::kNone);
+    }
+    EXPECT_EQ(cycle.mode(), Mode::kActive);
+    return plant.written(1).count;
+  };
+  const std::int64_t one = correction_nm(21, 20);
+  EXPECT_LT(one, -9000) << "1e-4 of 100 mm at least";
+  EXPECT_EQ(correction_nm(20, 21), one);
+  EXPECT_NEAR(static_cast<double>(correction_nm(21, 21)), 2 * static_cast<double>(one), 8)
+      << "4 nm for (1e-4)^2 of 200 mm twice, 2 nm for each of two roundings";
+  EXPECT_EQ(correction_nm(20, 20), 0);
 }
 
 }  // namespace
