@@ -579,5 +579,16 @@ TEST(Cycle, EachInputOfTheProgramActsOnTheCorrection) {
   EXPECT_EQ(correction_nm(20, 20), 0);
 }
 
+// The reversal error of X changes faster than its drive may move.
+TEST(Cycle, SlewingTicksAreCounted) {
+  Rig rig({}, {}, 1);
+  ASSERT_TRUE(rig.run_to(Mode::kActive));
+  const std::uint64_t before = rig.cycle().health().slewing;
+  std::uint64_t slewing = 0;
+  for (int i = 0; i < 40'000; ++i) slewing += (rig.tick().output.flags & kSlewing) != 0 ? 1 : 0;
+  EXPECT_GT(slewing, 10u);
+  EXPECT_EQ(rig.cycle().health().slewing, before + slewing);
+}
+
 }  // namespace
 }  // namespace vernier::cycle_test

@@ -561,6 +561,10 @@ TEST_F(LinkTest, ShortHistoryIsGivenToo) {
   std::uint64_t number = 0;
   std::memcpy(&number, reply + kReplyHeaderBytes + 10, sizeof(number));
   EXPECT_EQ(number, 200u - 64u + 1u);
+  // The next request begins with the first tick that had no room.
+  std::uint64_t next = 0;
+  std::memcpy(&next, reply + kReplyHeaderBytes, sizeof(next));
+  EXPECT_EQ(next, number + (size - kReplyHeaderBytes - 10) / tick);
 }
 
 TEST_F(LinkTest, LiveRegistersSayWhatTheTickSays) {

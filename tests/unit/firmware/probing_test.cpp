@@ -357,7 +357,7 @@ struct StandingBench {
   void tick() {
     woke = woke + InstantNs(1'000'000);
     const TickReport report = cycle->tick(TimeUs(woke.count / 1000), Command::kNone);
-    probing->after_tick(*cycle, report, woke, TimeUs(woke.count / 1000), exchange);
+    probing->after_tick(*cycle, report, woke, TimeUs(woke.count / 1000 + ahead_us), exchange);
   }
   StandingBoard devices, actual;
   ProbeSettings settings;
@@ -365,6 +365,7 @@ struct StandingBench {
   std::optional<Probing> probing;
   Exchange exchange;
   InstantNs woke;
+  std::int64_t ahead_us = 0;  // time t of the machine file, before the clock of the board
 };
 
 TEST(Probing, ReadsTheActualPositionsOfTheAxesOfTheBoardOnly) {
@@ -407,6 +408,21 @@ TEST(Probing, ReadsSixteenEdgesInATick) {
   EXPECT_EQ(bench.devices.edges, 1);
   bench.tick();
   EXPECT_EQ(bench.devices.edges, 0);
+}
+
+// The time of a touch is that of the contact, a delay before the edge, as time t of the machine file.
+TEST(Probing, TimeOfATouchIsThatOfTheContact) {
+  for (const std::int64_t ahead_us : {0, 3600, -2000}) {
+    StandingBench bench(3);
+    bench.ahead_us = ahead_us;
+    bench.probing->set_delay(InstantNs(1'200'000));
+    for (int i = 0; i < 8; ++i) bench.tick();
+    bench.devices.edges = 1, bench.devices.at = InstantNs(8'300'000);
+    for (int i = 0; i < 8; ++i) bench.tick();
+    TouchRecord touch;
+    ASSERT_TRUE(bench.exchange.touches.read(0, touch));
+    EXPECT_EQ(touch.time_ns, 8'300'000 - 1'200'000 + 1000 * ahead_us);
+  }
 }
 
 }  // namespace

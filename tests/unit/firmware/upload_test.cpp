@@ -723,6 +723,34 @@ TEST_F(Upload, PriceOfALineIsItsTimeInOperations) {
   EXPECT_EQ(memory[0], 0u) << "whole rounds through all lines end where they began";
 }
 
+// The measurement visits as many lines as fit, a power of two, each once; the words between stay.
+TEST_F(Upload, PriceOfALineVisitsEachLineOnce) {
+  struct {
+    std::size_t words, lines;
+  } const cases[] = {{32, 2}, {1023, 32}, {1024, 64}, {1025, 64}, {2048, 128}};
+  for (const auto& wanted : cases) {
+    constexpr std::uint32_t kUntouched = 0xdeadbeef;
+    SteppedClock clock;
+    std::vector<std::uint32_t> memory(wanted.words, kUntouched);
+    measured_work_budget(clock, TimeUs(1000), memory);
+    // The word of line 0 was replaced at the end: by 0, as whole rounds end where they began.
+    std::vector<int> named(wanted.lines, 0);
+    for (std::size_t i = 0; i < wanted.words; ++i)
+      if (i % 16 != 0 || i / 16 >= wanted.lines) {
+        EXPECT_EQ(memory[i], kUntouched) << wanted.words << " " << i;
+      } else if (i > 0) {
+        ASSERT_LT(memory[i], wanted.lines);
+        ++named[memory[i]];
+      }
+    EXPECT_EQ(memory[0], 0u);
+    EXPECT_EQ(std::count(named.begin(), named.end(), 1), static_cast<std::ptrdiff_t>(wanted.lines) - 1);
+    EXPECT_EQ(std::count(named.begin(), named.end(), 0), 1) << "which line 0 named";
+  }
+  std::vector<std::uint32_t> less(31);
+  SteppedClock clock;
+  EXPECT_EQ(measured_work_budget(clock, TimeUs(1000), less).of_line, 0u) << "one line has no jump";
+}
+
 TEST_F(Upload, WorkCountsTermsSoThatNoImageStallsTheTick) {
   std::vector<ProductTerm> terms(kMaxTerms, ProductTerm{0, 0, 40});
   std::vector<Instruction> steps(900, Instruction{OpCode::kDot, 20, kMaxTerms / 2, kMaxTerms / 2, 0, 0, 0});
@@ -825,6 +853,15 @@ TEST_F(Upload, ImageThatFillsTheStoreIsTaken) {
   UploadRig fits(exact, key_), too_small(less, key_);
   EXPECT_EQ(fits.send(bytes).fault, UploadFault::kNone);
   EXPECT_EQ(too_small.send(bytes).fault, UploadFault::kTooLarge);
+}
+
+TEST_F(Upload, BeginsWithTheSizeOfAHeaderToThatOfTheStore) {
+  UploadRig rig(store_, key_);
+  constexpr auto kHeader = static_cast<std::uint32_t>(sizeof(UploadHeader));
+  EXPECT_EQ(rig.uploader().begin(kHeader - 1).fault, UploadFault::kNotAnUpload);
+  EXPECT_EQ(rig.uploader().begin(kHeader).fault, UploadFault::kNone);
+  EXPECT_EQ(rig.uploader().begin(store_.capacity()).fault, UploadFault::kNone);
+  EXPECT_EQ(rig.uploader().begin(store_.capacity() + 1).fault, UploadFault::kTooLarge);
 }
 
 TEST_F(Upload, LatestTimeOfIssueIsTakenAndNoLaterOne) {
