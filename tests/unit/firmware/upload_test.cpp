@@ -751,6 +751,18 @@ TEST_F(Upload, PriceOfALineVisitsEachLineOnce) {
   EXPECT_EQ(measured_work_budget(clock, TimeUs(1000), less).of_line, 0u) << "one line has no jump";
 }
 
+// The measurement has an end: eight tries of the operations, and eight of the jumps.
+TEST_F(Upload, WorkIsMeasuredInSixteenTries) {
+  struct : Clock {
+    InstantNs now() noexcept override { return InstantNs(10 * ++calls); }
+    HalFault sleep_until(InstantNs) noexcept override { return HalFault::kNone; }
+    int calls = 0;
+  } clock;
+  std::vector<std::uint32_t> memory(16 * 16);
+  measured_work_budget(clock, TimeUs(1000), memory);
+  EXPECT_EQ(clock.calls, 2 * 16) << "two looks at the clock in a try";
+}
+
 TEST_F(Upload, WorkCountsTermsSoThatNoImageStallsTheTick) {
   std::vector<ProductTerm> terms(kMaxTerms, ProductTerm{0, 0, 40});
   std::vector<Instruction> steps(900, Instruction{OpCode::kDot, 20, kMaxTerms / 2, kMaxTerms / 2, 0, 0, 0});
