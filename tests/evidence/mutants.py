@@ -70,6 +70,8 @@ EQUIVALENT = [
     ("if (size > 0) std::memcpy(bytes_ + used_", (">", ">="), "a copy of no bytes"),
     ("12 * (root + bit) * (root + bit) <= twelve_times", ("<=", "<"), "a root that is exact is one too small then, and rounded up in the next line"),
     ("w[i] = 0;", ("0", "1"), "the eight bytes after it shift the one out"),
+    ("std::uint64_t{weight} * 10'000 + 32768", ("32768", "32769"), "a multiple of 16 is not one below a half of 65536"),
+    ("equation.channel_count = 1;", ("1", "2"), "the last sum is in the padding behind the registers, which nothing reads"),
     ("kTravelGuard = 14", ("14", "15"), "one guard bit more: the widest value stays below 2^63"),
 ]
 

@@ -161,5 +161,108 @@ TEST(AxisMonitor, HostileCountsNeitherOverflowNorPass) {
   }
 }
 
+struct StepLimit {
+  std::int64_t step;     // AxisLimits::step
+  int missing;           // missing readings before, a tick each
+  std::int32_t elapsed;  // of the reading, in 1/256 of a tick
+  std::int64_t most;     // largest travel that is no jump
+};
+
+// A tick that is late by more than an eighth may bring one reading more: then the axis may have moved one
+// step further.
+TEST(AxisMonitor, TravelAtTheLimitIsNoJumpAndOneCountMoreIs) {
+  constexpr StepLimit kCases[] = {
+      {2'000'000, 0, 256, 2'000'000},
+      {2'000'000, 0, 288, 2'000'000},
+      {2'000'000, 0, 289, 4'257'812},
+      {2'000'000, 1, 100, 4'000'000},
+      {2'000'000, 1, 225, 4'000'000},
+      {2'000'000, 1, 256, 4'000'000},
+      {2'000'000, 1, 288, 4'250'000},
+      {2'000'000, 1, 289, 6'257'812},
+      {2'000'000, 2, 288, 6'250'000},
+      {2'000'000, 2, 289, 8'257'812},
+      {INT64_MAX, 0, 512, std::int64_t{3} << 42},
+      {std::int64_t{1} << 42, 0, 512, std::int64_t{3} << 42},
+      {(std::int64_t{1} << 42) - 256, 0, 512, (std::int64_t{3} << 42) - 768},
+      {std::int64_t{1} << 30, 0, kMostElapsed.count, std::int64_t{1} << 42},
+  };
+  for (const StepLimit& wanted : kCases)
+    for (const int sense : {1, -1})
+      for (const int more : {0, 1}) {
+        AxisLimits limits;
+        limits.step = wanted.step;
+        Bench bench(true, limits);
+        bench.take(0);
+        for (int i = 0; i < wanted.missing; ++i) bench.miss();
+        AxisReading reading;
+        reading.position = AxisPosition(sense * (wanted.most + more));
+        EXPECT_EQ(bench.monitor.take(true, reading, *bench.health, TicksQ8{wanted.elapsed}),
+                  more == 0 ? Fault::kNone : Fault::kPositionJump)
+            << wanted.step << " " << wanted.missing << " " << wanted.elapsed << " " << sense;
+      }
+}
+
+// The smoothed speed takes a sixteenth of the new one, the acceleration a sixteenth of the change. The travel
+// in a tick, and the change of the speed, count up to 2^30.
+TEST(AxisMonitor, SpeedAndAccelerationOfOneTickAreLimited) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 30;
+  struct {
+    std::int64_t travel, speed, acceleration;
+  } const cases[] = {{16, 1000, 1000 * 1000 / 16},
+                     {1 << 24, 1'048'576'000, 65'536'000'000},
+                     {kMost - 16, kMost / 16 * 1000 - 1000, kMost / 16 * 1000},
+                     {kMost, kMost / 16 * 1000, kMost / 16 * 1000},
+                     {kMost + 16, kMost / 16 * 1000, kMost / 16 * 1000},
+                     {4 * kMost, kMost / 16 * 1000, kMost / 16 * 1000}};
+  for (const auto& wanted : cases)
+    for (const int sense : {1, -1}) {
+      AxisLimits limits;
+      limits.step = 8 * kMost;
+      Bench bench(false, limits);
+      bench.take(0);
+      EXPECT_EQ(bench.take(sense * wanted.travel), Fault::kNone);
+      EXPECT_EQ(bench.monitor.state().velocity, AxisSpeed(sense * wanted.speed)) << wanted.travel;
+      EXPECT_EQ(bench.monitor.state().acceleration.count, sense * wanted.acceleration) << wanted.travel;
+    }
+}
+
+TEST(AxisMonitor, SenseTurnsOneCountBeyondItsTravel) {
+  for (const int sense : {1, -1}) {
+    Bench bench(false);
+    bench.take(0);
+    bench.take(sense * 10'000);
+    EXPECT_EQ(bench.monitor.state().sense, sense);
+    bench.take(sense * 9'000);
+    EXPECT_EQ(bench.monitor.state().sense, sense) << "exactly the limit";
+    bench.take(sense * 8'999);
+    EXPECT_EQ(bench.monitor.state().sense, -sense);
+    EXPECT_EQ(bench.monitor.state().since, AxisTravel(1001));
+    bench.take(sense * 8'998);
+    EXPECT_EQ(bench.monitor.state().since, AxisTravel(1002));
+  }
+}
+
+// The sum of the speeds is compared with the limit; a speed counts up to 2^40.
+TEST(AxisMonitor, IndicatedTravelAtTheLimitIsNotFrozenAndOneCountMoreIs) {
+  struct {
+    std::int64_t travel, speed;  // AxisLimits::frozen_travel; speed of one reading
+    bool frozen;
+  } const cases[] = {{200'000, 200'000'000, false},
+                     {200'000, 200'000'001, true},
+                     {1'099'511'628, INT64_MAX, false},
+                     {1'099'511'627, INT64_MAX, true},
+                     {1'099'511'627, 1'099'511'627'000, false},
+                     {1'099'511'627, 1'099'511'627'001, true}};
+  for (const auto& wanted : cases)
+    for (const int sense : {1, -1}) {
+      AxisLimits limits;
+      limits.frozen_travel = wanted.travel;
+      Bench bench(true, limits);
+      EXPECT_EQ(bench.take(0, sense * wanted.speed), wanted.frozen ? Fault::kPositionFrozen : Fault::kNone)
+          << wanted.travel << " " << wanted.speed;
+    }
+}
+
 }  // namespace
 }  // namespace vernier::axis_monitor_test

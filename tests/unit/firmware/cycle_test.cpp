@@ -416,5 +416,179 @@ TEST(Cycle, EndOfAnOutputIsToldAndAchievedIsWhatItGives) {
   EXPECT_NE(cycle.limits(0) & kAtOutputLimit, 0);
 }
 
+/// A board whose axes and inputs give what the test says.
+struct GivenDevices : AxisReader, InputReader, CorrectionWriter {
+  void begin_tick() noexcept override {}
+  HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override {
+    ++axis_reads[axis];
+    reading.velocity = AxisSpeed(speed[axis]);
+    return HalFault::kNone;
+  }
+  HalFault read_path(PathReading& reading) noexcept override { return reading = path, path_fault; }
+  bool gives_motion() const noexcept override { return true; }
+  HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override {
+    ++input_reads[input];
+    value = InputMicro(given);
+    return HalFault::kNone;
+  }
+  HalFault write_correction(std::uint32_t, AxisTravel) noexcept override { return HalFault::kNone; }
+  int axis_reads[kMaxAxes] = {}, input_reads[kMaxInputs] = {};
+  std::int64_t speed[kMaxAxes] = {}, given = 0;
+  PathReading path;
+  HalFault path_fault = HalFault::kNone;
+};
+
+/// A cycle of given devices and a program that reads `of_axes` of `axes` and `of_inputs` of `inputs`.
+struct GivenBench {
+  GivenBench(std::uint32_t axes, std::uint32_t of_axes, std::uint32_t inputs, std::uint32_t of_inputs,
+             const CycleLimits& limits = {}) {
+    Wiring wiring;
+    for (std::uint32_t i = 0; i < axes; ++i) wiring.axes.push_back({"X", i + 1 == axes && axes > 3});
+    for (std::uint32_t i = 0; i < inputs; ++i) wiring.inputs.push_back("T");
+    cycle = std::make_unique<Cycle>(wiring, TimeUs(1000), Board{clock, devices, devices, devices}, limits);
+    for (std::uint32_t i = 0; i < kMaxAxes; ++i) bound->axis[i] = i;
+    for (std::uint32_t i = 0; i < kMaxInputs; ++i) bound->input[i] = i, bound->reads_input[i] = i < of_inputs;
+    bound->program.axis_count = of_axes;
+    bound->program.input_count = of_inputs;
+    cycle->use(*bound);
+  }
+  void tick() { cycle->tick(TimeUs(time += 1000), Command::kNone); }
+  GivenDevices devices;
+  SimClock clock;
+  std::unique_ptr<BoundProgram> bound = std::make_unique<BoundProgram>();
+  std::unique_ptr<Cycle> cycle;
+  std::int64_t time = 0;
+};
+
+TEST(Cycle, EachAxisAndInputIsReadOnceATickWhateverTheProgramReads) {
+  for (const std::uint32_t devices : {1u, 2u, 5u, kMaxAxes})
+    for (std::uint32_t read = 0; read <= devices; ++read) {
+      GivenBench bench(devices, read, devices, read);
+      for (int i = 0; i < 3; ++i) bench.tick();
+      for (std::uint32_t i = 0; i < kMaxAxes; ++i) {
+        EXPECT_EQ(bench.devices.axis_reads[i], i < devices ? 3 : 0) << devices << " " << read << " " << i;
+        EXPECT_EQ(bench.devices.input_reads[i], i < devices ? 3 : 0) << devices << " " << read << " " << i;
+      }
+    }
+}
+
+// A speed counts up to 1 m/s; the last of more than three axes is rotary here.
+TEST(Cycle, FeedOfTheAxesIsTheRootRoundedDownAndEachSpeedIsLimited) {
+  struct {
+    std::uint32_t axes;
+    std::int64_t speed[kMaxAxes], root;
+  } const cases[] = {
+      {2, {3'000'000, -4'000'000}, 5'000'000},
+      {2, {1, 1}, 1},
+      {2, {2, 2}, 2},
+      {1, {999'999'999}, 999'999'999},
+      {1, {1'000'000'000}, 1'000'000'000},
+      {1, {1'000'000'001}, 1'000'000'000},
+      {1, {-1'000'000'001}, 1'000'000'000},
+      {1, {INT64_MIN}, 1'000'000'000},
+      {4, {7, 0, 0, 1'000'000}, 7},
+      {8,
+       {INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX, INT64_MAX},
+       2'645'751'311}};  // the root of 7 m/s
+  for (const auto& wanted : cases) {
+    GivenBench bench(wanted.axes, 0, 0, 0);
+    std::copy_n(wanted.speed, kMaxAxes, bench.devices.speed);
+    bench.tick();
+    EXPECT_EQ(bench.cycle->path().feed.count, 60 * wanted.root) << wanted.axes << " " << wanted.speed[0];
+  }
+}
+
+TEST(Cycle, StepOfAnInputAtTheLimitIsPlausibleAndOneMoreIsNot) {
+  struct {
+    std::int64_t before, after, step;
+    bool jumps;
+  } const cases[] = {{0, 1000, 1000, false},
+                     {0, 1001, 1000, true},
+                     {0, -1000, 1000, false},
+                     {0, -1001, 1000, true},
+                     {INT64_MIN, -1, INT64_MAX, false},
+                     {INT64_MIN, 0, INT64_MAX, true},
+                     {INT64_MAX, 0, INT64_MAX, false},
+                     {INT64_MAX, INT64_MIN, INT64_MAX, true}};
+  for (const auto& wanted : cases) {
+    CycleLimits limits;
+    limits.input[0].low = INT64_MIN, limits.input[0].high = INT64_MAX, limits.input[0].step = wanted.step;
+    GivenBench bench(1, 1, 1, 1, limits);
+    bench.devices.given = wanted.before;
+    bench.tick();
+    EXPECT_EQ(bench.cycle->health().implausible, 0u) << "the first has none before it";
+    bench.devices.given = wanted.after;
+    bench.tick();
+    EXPECT_EQ(bench.cycle->health().implausible, wanted.jumps ? 1u : 0u)
+        << wanted.before << " " << wanted.after;
+    bench.tick();
+    EXPECT_EQ(bench.cycle->health().implausible, wanted.jumps ? 1u : 0u) << "a jump is counted once";
+  }
+}
+
+TEST(Cycle, PathOfTheControllerIsTakenAndKeptWhileItGivesNone) {
+  GivenBench bench(2, 0, 0, 0);
+  bench.devices.speed[0] = 1000;
+  bench.devices.path.feed = FeedNmPerMin(7'000'000), bench.devices.path.tells_feed = true;
+  bench.devices.path.curvature = CurvatureNanoPerMm(12);
+  bench.tick();
+  EXPECT_EQ(bench.cycle->path().feed, FeedNmPerMin(7'000'000));
+  EXPECT_EQ(bench.cycle->path().curvature, CurvatureNanoPerMm(12));
+  bench.devices.path.feed = FeedNmPerMin(8'000'000), bench.devices.path.curvature = CurvatureNanoPerMm(13);
+  bench.devices.path_fault = HalFault::kNoReading;
+  bench.tick();
+  EXPECT_EQ(bench.cycle->path().feed, FeedNmPerMin(7'000'000)) << "no reading";
+  EXPECT_EQ(bench.cycle->path().curvature, CurvatureNanoPerMm(12));
+  bench.devices.path_fault = HalFault::kNone;
+  bench.tick();
+  EXPECT_EQ(bench.cycle->path().feed, FeedNmPerMin(8'000'000));
+}
+
+/// Two thermometers at temperatures that the test gives.
+struct TwoTemperatures : InputReader {
+  HalFault read_input(std::uint32_t input, InputMicro& value) noexcept override {
+    return value = InputMicro(1'000'000 * degC[input]), HalFault::kNone;
+  }
+  std::int64_t degC[2] = {20, 20};
+};
+
+// Y grows by 1e-4 for each degree of each of the two.
+TEST(Cycle, EachInputOfTheProgramActsOnTheCorrection) {
+  const auto image = image_with_two_inputs();
+  const auto correction_nm = [&](std::int64_t first_degC, std::int64_t second_degC) {
+    Roaming motion({{0, 600'000'000}, {100'000'000, 200'000'000}}, {}, TimeUs(1000), 0.1, 1);
+    SimPlant plant(motion, 2, 0, {});
+    plant.release();
+    SimClock clock;
+    TwoTemperatures inputs;
+    inputs.degC[0] = first_degC, inputs.degC[1] = second_degC;
+    Cycle cycle(image->view, Board{clock, plant, inputs, plant}, CycleLimits{});
+    for (int tick = 1; tick <= 3000; ++tick) {
+      plant.advance();
+      const bool ready = cycle.mode() == Mode::kReady && cycle.weight() == WeightQ16{};
+      cycle.tick(TimeUs(1000 * tick), ready ? Command::kActivate : Command::kNone);
+    }
+    EXPECT_EQ(cycle.mode(), Mode::kActive);
+    return plant.written(1).count;
+  };
+  const std::int64_t one = correction_nm(21, 20);
+  EXPECT_LT(one, -9000) << "1e-4 of 100 mm at least";
+  EXPECT_EQ(correction_nm(20, 21), one);
+  EXPECT_NEAR(static_cast<double>(correction_nm(21, 21)), 2 * static_cast<double>(one), 8)
+      << "4 nm for (1e-4)^2 of 200 mm twice, 2 nm for each of two roundings";
+  EXPECT_EQ(correction_nm(20, 20), 0);
+}
+
+// The reversal error of X changes faster than its drive may move.
+TEST(Cycle, SlewingTicksAreCounted) {
+  Rig rig({}, {}, 1);
+  ASSERT_TRUE(rig.run_to(Mode::kActive));
+  const std::uint64_t before = rig.cycle().health().slewing;
+  std::uint64_t slewing = 0;
+  for (int i = 0; i < 40'000; ++i) slewing += (rig.tick().output.flags & kSlewing) != 0 ? 1 : 0;
+  EXPECT_GT(slewing, 10u);
+  EXPECT_EQ(rig.cycle().health().slewing, before + slewing);
+}
+
 }  // namespace
 }  // namespace vernier::cycle_test

@@ -385,6 +385,45 @@ TEST(FeatureInputs, DisplacementStartsFromRestAfterAGap) {
   EXPECT_EQ(inputs.held(), 1u) << "of the sample";
 }
 
+// Each signal counts up to 2^60, before one is subtracted from the other.
+TEST(FeatureInputs, SignalsAreLimitedBeforeTheirDifference) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 60;
+  struct {
+    std::int64_t of, minus, peak;
+  } const cases[] = {{kMost, kMost - 5000, 5000},   {kMost + 5000, kMost, 0},   {kMost, kMost + 5000, 0},
+                     {-kMost, 5000 - kMost, -5000}, {-kMost - 5000, -kMost, 0}, {-kMost, -kMost - 5000, 0}};
+  for (const auto& wanted : cases) {
+    SetInputs source;
+    FeatureInputs inputs(
+        source, 3, {{.input = 2, .of = 0, .minus = 1, .feature = Feature::kPeak, .window = 6}}, TimeUs(1000));
+    source.values[0] = InputMicro(wanted.of), source.values[1] = InputMicro(wanted.minus);
+    for (int i = 0; i < 6; ++i) inputs.begin_tick();
+    InputMicro peak;
+    ASSERT_EQ(inputs.read_input(2, peak), HalFault::kNone);
+    EXPECT_EQ(peak.count, wanted.peak) << wanted.of << " " << wanted.minus;
+  }
+}
+
+// A displacement is valid after three periods of its corner, rounded up to a sample.
+TEST(FeatureInputs, DisplacementIsReadyAfterThreePeriodsOfItsCorner) {
+  struct {
+    std::int64_t corner_mHz;
+    int samples;
+  } const cases[] = {{15'000, 200}, {15'001, 200}, {14'999, 201}, {1000, 3000}};
+  for (const auto& wanted : cases) {
+    SetInputs source;
+    FeatureInputs inputs(source, 2,
+                         {{.input = 1, .of = 0, .corner_mHz = wanted.corner_mHz, .lsb_nm_s2 = 98'000}},
+                         TimeUs(1000));
+    ASSERT_EQ(inputs.refused(), kNoInput);
+    InputMicro value;
+    int samples = 0;
+    for (; inputs.read_input(1, value) == HalFault::kNoReading && samples < 5000; ++samples)
+      inputs.begin_tick();
+    EXPECT_EQ(samples, wanted.samples) << wanted.corner_mHz;
+  }
+}
+
 TEST(FeatureInputs, RefuseADisplacementThatItsFilterCannotKeep) {
   SetInputs source;
   const auto refused = [&](FeatureRequest bad) {

@@ -397,6 +397,37 @@ TEST(Challenges, OfOthersDoNotUseUpTheOperatorsOne) {
       << "of another connection";
 }
 
+// The gate keeps a challenge for ten seconds, and 48 of them. A signed request has at least the byte of its
+// op.
+TEST(Challenges, AreValidToTheEndOfTheirTimeAndOfTheTable) {
+  const SigningKey key = new_key();
+  const BoardIdentity identity(key.public_part());
+  constexpr Caller kOperator{1, 1};
+  const auto status_after = [&](std::int64_t time_us, std::uint64_t others) {
+    Gate gate(identity, Nonce{1}, ChallengeSeed{1});
+    const auto request = signed_hold(key, gate.challenge(LinkAccess::kCommand, kOperator, TimeUs(7)));
+    for (std::uint64_t i = 0; i < others; ++i) gate.challenge(LinkAccess::kCommand, {1, 2 + i}, TimeUs(8));
+    return gate
+        .open(request.data(), static_cast<std::uint32_t>(request.size()), LinkAccess::kCommand, kOperator,
+              TimeUs(7 + time_us))
+        .status;
+  };
+  EXPECT_EQ(status_after(0, 0), LinkStatus::kDone);
+  EXPECT_EQ(status_after(10'000'000, 0), LinkStatus::kDone) << "exactly ten seconds";
+  EXPECT_EQ(status_after(10'000'001, 0), LinkStatus::kStale);
+  EXPECT_EQ(status_after(10, 47), LinkStatus::kDone) << "the table is full";
+  EXPECT_EQ(status_after(10, 48), LinkStatus::kStale) << "the oldest was removed";
+  Gate gate(identity, Nonce{1}, ChallengeSeed{1});
+  const auto request = signed_hold(key, gate.challenge(LinkAccess::kCommand, kOperator, TimeUs(0)));
+  constexpr std::uint32_t kHead = kRequestHeaderBytes + sizeof(SignedRequest);
+  const auto status_of = [&](std::uint32_t size) {
+    return gate.open(request.data(), size, LinkAccess::kCommand, kOperator, TimeUs(0)).status;
+  };
+  EXPECT_EQ(status_of(kHead - 1), LinkStatus::kBadLength);
+  EXPECT_EQ(status_of(kHead), LinkStatus::kBadLength) << "no op";
+  EXPECT_EQ(status_of(kHead + 1), LinkStatus::kBadSignature) << "an op, which was signed with its payload";
+}
+
 TEST(SignedRequests, AreTakenForTheRightsOfTheirKeyUntilItIsRetired) {
   const auto status = [](const TrustedKey& rights, LinkOp op) {
     const SigningKey key = new_key();
@@ -530,6 +561,10 @@ TEST_F(LinkTest, ShortHistoryIsGivenToo) {
   std::uint64_t number = 0;
   std::memcpy(&number, reply + kReplyHeaderBytes + 10, sizeof(number));
   EXPECT_EQ(number, 200u - 64u + 1u);
+  // The next request begins with the first tick that had no room.
+  std::uint64_t next = 0;
+  std::memcpy(&next, reply + kReplyHeaderBytes, sizeof(next));
+  EXPECT_EQ(next, number + (size - kReplyHeaderBytes - 10) / tick);
 }
 
 TEST_F(LinkTest, LiveRegistersSayWhatTheTickSays) {
@@ -654,6 +689,114 @@ TEST_F(LinkTest, LiveRegistersOfARotaryAxisAreThousandthsOfADegree) {
   EXPECT_EQ(pair(kLiveAxes + kLiveRegistersPerAxis + 2), -90'000'000);
   EXPECT_EQ(pair(kLiveAxes + 2 * kLiveRegistersPerAxis), 0) << "no third axis";
   EXPECT_EQ(registers[kLiveLatency], 12'345) << "us";
+}
+
+// Until the history is full, it begins with number 0. After that its oldest 64th is left out, because the
+// tick overwrites it. The number of lost ticks has 16 bits.
+TEST_F(LinkTest, HistoryBeginsWhereItIsNotBeingOverwritten) {
+  struct {
+    std::uint32_t ticks;
+    std::uint64_t first, next, lost;
+  } const cases[] = {{256, 0, 0, 0},
+                     {257, 0, 5, 5},
+                     {257, 4, 5, 1},
+                     {257, 5, 5, 0},
+                     {257, 6, 6, 0},
+                     {65'787, 0, 65'535, 65'535},
+                     {65'788, 0, 65'536, 65'535},
+                     {65'788, 1, 65'536, 65'535}};
+  for (const auto& wanted : cases) {
+    Exchange exchange(256, 8);
+    const BoardIdentity nobody;
+    Link link(exchange, rig_.uploader(), wiring_, TimeUs(1000), nobody);
+    for (std::uint32_t i = 0; i < wanted.ticks; ++i) exchange.ticks.add(TickRecord{});
+    std::uint8_t request[12] = {static_cast<std::uint8_t>(LinkOp::kHistory), 1}, reply[kMaxReplyBytes];
+    std::memcpy(request + 2, &wanted.first, sizeof(wanted.first));
+    request[10] = 1;
+    link.answer(request, sizeof(request), reply, TimeUs(1));
+    std::uint16_t lost = 0;
+    std::uint64_t number = 0;
+    std::memcpy(&lost, reply + kReplyHeaderBytes + 8, sizeof(lost));
+    std::memcpy(&number, reply + kReplyHeaderBytes + 10, sizeof(number));
+    EXPECT_EQ(number, wanted.next) << wanted.ticks << " " << wanted.first;
+    EXPECT_EQ(lost, wanted.lost) << wanted.ticks << " " << wanted.first;
+  }
+}
+
+// The last value that a request may have, and the next one.
+TEST_F(LinkTest, RequestIsTakenToTheLimitOfItsValues) {
+  rig_.run(10);
+  const auto status = [&](std::vector<std::uint8_t> request) {
+    std::uint8_t reply[kMaxReplyBytes];
+    const auto size = static_cast<std::uint32_t>(request.size());
+    Exchange exchange(64, 8);
+    Link link(exchange, rig_.uploader(), wiring_, TimeUs(1000), identity_);
+    link.answer(request.data(), size, reply, TimeUs(1));
+    return static_cast<LinkStatus>(reply[2]);
+  };
+  constexpr auto kCommandOp = static_cast<std::uint8_t>(LinkOp::kCommand);
+  EXPECT_EQ(status({kCommandOp, 1, 0}), LinkStatus::kBadValue);
+  EXPECT_EQ(status({kCommandOp, 1, 1}), LinkStatus::kDone);
+  EXPECT_EQ(status({kCommandOp, 1, kCommandCount - 1}), LinkStatus::kDone);
+  EXPECT_EQ(status({kCommandOp, 1, kCommandCount}), LinkStatus::kBadValue);
+  EXPECT_EQ(status({kCommandOp, 1}), LinkStatus::kBadLength);
+  EXPECT_EQ(status({kCommandOp, 1, 1, 0}), LinkStatus::kBadLength);
+  constexpr auto kWeightOp = static_cast<std::uint8_t>(LinkOp::kWeight);
+  EXPECT_EQ(status({kWeightOp, 1, 1, 0, 0, 1, 0}), LinkStatus::kDone) << "the full weight, last axis";
+  EXPECT_EQ(status({kWeightOp, 1, 1, 1, 0, 1, 0}), LinkStatus::kBadValue);
+  EXPECT_EQ(status({kWeightOp, 1, 2, 0, 0, 1, 0}), LinkStatus::kBadValue) << "no third axis";
+  EXPECT_EQ(status({0, 1}), LinkStatus::kUnknownOp);
+  EXPECT_EQ(status({kLinkOpCount, 1}), LinkStatus::kUnknownOp);
+  std::vector<std::uint8_t> longest(kMaxRequestBytes, 0);
+  longest[0] = static_cast<std::uint8_t>(LinkOp::kData);
+  EXPECT_EQ(status(longest), LinkStatus::kRefused) << "no upload has begun";
+  longest.push_back(0);
+  EXPECT_EQ(status(longest), LinkStatus::kBadLength);
+}
+
+// A register pair has 32 bits with a sign, a latency 16 bits without; weights are rounded to 0.01 %.
+TEST_F(LinkTest, LiveRegistersStopAtTheEndOfTheirRange) {
+  Exchange& exchange = const_cast<Exchange&>(rig_.service().exchange());
+  rig_.run(10);
+  TickRecord tick;
+  StateRecord state;
+  HealthRecord health;
+  ASSERT_TRUE(exchange.ticks.read(exchange.ticks.count() - 1, tick));
+  ASSERT_TRUE(exchange.state.read(state));
+  ASSERT_TRUE(exchange.health.read(health));
+  std::uint16_t registers[kLiveRegisters];
+  const auto pair = [&](int at) {
+    exchange.ticks.add(tick), exchange.state.publish(state), exchange.health.publish(health);
+    link_.fill_registers(registers);
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(registers[at]) << 16 | registers[at + 1]);
+  };
+  for (const std::int64_t end : {std::int64_t{INT32_MAX}, std::int64_t{INT32_MIN}})
+    for (const int beyond : {-1, 0, 1}) {
+      const std::int64_t value = end + beyond;
+      tick.position[0] = tick.input[0] = 1000 * value;
+      const std::int64_t shown = std::clamp<std::int64_t>(value, INT32_MIN, INT32_MAX);
+      EXPECT_EQ(pair(kLiveAxes), shown);
+      EXPECT_EQ(pair(kLiveInputs), shown);
+    }
+  struct {
+    std::int64_t latency_ns;
+    std::uint16_t us;
+  } const latencies[] = {{-1000, 0}, {999, 0}, {1000, 1}, {65'535'999, 65'535}, {65'536'000, 65'535}};
+  for (const auto& wanted : latencies) {
+    health.latency_ns[1] = wanted.latency_ns;
+    pair(0);
+    EXPECT_EQ(registers[kLiveLatency], wanted.us);
+  }
+  struct {
+    std::int32_t weight;
+    std::uint16_t share;
+  } const weights[] = {{0, 0},          {3, 0},           {4, 1},          {32'768, 5'000},
+                       {65'532, 9'999}, {65'533, 10'000}, {65'536, 10'000}};
+  for (const auto& wanted : weights) {
+    state.axis_weight[1] = wanted.weight;
+    pair(0);
+    EXPECT_EQ(registers[kLiveAxisWeights + 1], wanted.share) << wanted.weight;
+  }
 }
 
 // The tick may be interrupted at any point. A link then shows no state, and never half of a state.

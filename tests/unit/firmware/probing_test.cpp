@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "tests/support/approach.h"
 #include "tests/support/interrupted_write.h"
 #include "tests/unit/firmware/upload_rig.h"
@@ -307,6 +309,120 @@ TEST(Probing, GivesAReaderEveryTouchOrTheNumberOfThoseThatAreGone) {
   EXPECT_EQ(read, Exchange::kTouches);
   EXPECT_EQ(lost + read, 300u);
   EXPECT_THROW(client.workpiece({1e9, 0, 0}, 0), InputError);
+}
+
+/// The devices of a board with axes that stand still, and a probe with as many edges as the test says.
+class StandingBoard : public PositionReader,
+                      public InputReader,
+                      public CorrectionWriter,
+                      public ProbeLine,
+                      public Clock {
+ public:
+  void begin_tick() noexcept override {}
+  HalFault read_axis(std::uint32_t axis, AxisReading& reading) noexcept override {
+    reading.position = AxisPosition(1000 * (axis + 1));
+    read |= 1u << axis;
+    return HalFault::kNone;
+  }
+  HalFault read_input(std::uint32_t, InputMicro&) noexcept override { return HalFault::kNoReading; }
+  HalFault write_correction(std::uint32_t, AxisTravel) noexcept override { return HalFault::kNone; }
+  HalFault read_edge(ProbeEdge& edge) noexcept override {
+    if (edges == 0) return HalFault::kNoReading;
+    edge = {at, made = !made};
+    at = at + InstantNs(spacing_ns);
+    --edges;
+    return HalFault::kNone;
+  }
+  InstantNs resolution() const noexcept override { return {}; }
+  InstantNs now() noexcept override { return {}; }
+  HalFault sleep_until(InstantNs) noexcept override { return HalFault::kNone; }
+  std::uint32_t read = 0;  // bit i: axis i was read
+  int edges = 0;
+  bool made = false;
+  InstantNs at;
+  std::int64_t spacing_ns = 2'000'000;
+};
+
+/// A probe at a board with `axes` axes.
+struct StandingBench {
+  explicit StandingBench(std::uint32_t axes, std::uint8_t z = kMaxAxes) {
+    settings.axes = axes;
+    settings.xyz[0] = 0, settings.xyz[1] = 1, settings.xyz[2] = z;
+    Wiring wiring;
+    const char* const names[] = {"X", "Y", "Z", "A", "B", "C", "U", "V"};
+    for (std::uint32_t i = 0; i < axes; ++i) wiring.axes.push_back({names[i]});
+    cycle.emplace(wiring, TimeUs(1000), Board{devices, devices, devices, devices});
+    probing.emplace(devices, settings, &actual);
+  }
+  void tick() {
+    woke = woke + InstantNs(1'000'000);
+    const TickReport report = cycle->tick(TimeUs(woke.count / 1000), Command::kNone);
+    probing->after_tick(*cycle, report, woke, TimeUs(woke.count / 1000 + ahead_us), exchange);
+  }
+  StandingBoard devices, actual;
+  ProbeSettings settings;
+  std::optional<Cycle> cycle;
+  std::optional<Probing> probing;
+  Exchange exchange;
+  InstantNs woke;
+  std::int64_t ahead_us = 0;  // time t of the machine file, before the clock of the board
+};
+
+TEST(Probing, ReadsTheActualPositionsOfTheAxesOfTheBoardOnly) {
+  for (const std::uint32_t axes : {1u, 3u, 7u, kMaxAxes}) {
+    StandingBench bench(axes);
+    bench.tick();
+    EXPECT_EQ(bench.actual.read, (1u << axes) - 1) << axes;
+  }
+}
+
+// The index kMaxAxes names no axis, also at a board that has so many.
+TEST(Probing, BoardWithAllAxesAndWithoutAZHasNoWorkpiece) {
+  struct {
+    std::uint32_t axes;
+    std::uint8_t z;
+    bool in_workpiece;
+  } const cases[] = {
+      {kMaxAxes, kMaxAxes, false}, {kMaxAxes, kMaxAxes - 1, true}, {3, 3, false}, {3, 2, true}};
+  for (const auto& wanted : cases) {
+    StandingBench bench(wanted.axes, wanted.z);
+    for (int i = 0; i < 8; ++i) bench.tick();
+    bench.devices.edges = 1, bench.devices.at = bench.woke + InstantNs(300'000);
+    for (int i = 0; i < 8; ++i) bench.tick();
+    TouchRecord touch;
+    ASSERT_TRUE(bench.exchange.touches.read(0, touch)) << wanted.axes;
+    EXPECT_EQ(touch.fault, 0);
+    EXPECT_EQ(touch.position[wanted.axes - 1], 1000 * wanted.axes);
+    EXPECT_EQ((touch.flags & kTouchInWorkpiece) != 0, wanted.in_workpiece) << wanted.axes << " " << +wanted.z;
+    EXPECT_EQ(touch.workpiece_nm[2], wanted.in_workpiece ? 1000 * (wanted.z + 1) : 0);
+  }
+}
+
+// Further edges wait for the next tick.
+TEST(Probing, ReadsSixteenEdgesInATick) {
+  StandingBench bench(3);
+  bench.tick();
+  bench.devices.spacing_ns = 10, bench.devices.at = bench.woke;
+  bench.devices.edges = static_cast<int>(Probing::kMostEdges) + 1;
+  bench.tick();
+  EXPECT_EQ(bench.devices.edges, 1);
+  bench.tick();
+  EXPECT_EQ(bench.devices.edges, 0);
+}
+
+// The time of a touch is that of the contact, a delay before the edge, as time t of the machine file.
+TEST(Probing, TimeOfATouchIsThatOfTheContact) {
+  for (const std::int64_t ahead_us : {0, 3600, -2000}) {
+    StandingBench bench(3);
+    bench.ahead_us = ahead_us;
+    bench.probing->set_delay(InstantNs(1'200'000));
+    for (int i = 0; i < 8; ++i) bench.tick();
+    bench.devices.edges = 1, bench.devices.at = InstantNs(8'300'000);
+    for (int i = 0; i < 8; ++i) bench.tick();
+    TouchRecord touch;
+    ASSERT_TRUE(bench.exchange.touches.read(0, touch));
+    EXPECT_EQ(touch.time_ns, 8'300'000 - 1'200'000 + 1000 * ahead_us);
+  }
 }
 
 }  // namespace

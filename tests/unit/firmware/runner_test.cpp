@@ -225,5 +225,26 @@ TEST(Runner, TimeThatJumpsOrRunsBackwardsIsAClockFault) {
   }
 }
 
+// 1001 periods after the due time, 1000 ticks are left out one by one. A nanosecond later a new grid begins.
+TEST(Runner, LongestStopThatKeepsTheGridLeavesOutAThousandTicks) {
+  for (const int more : {0, 1}) {
+    RunnerBench bench;
+    bench.step();
+    bench.clock.late = InstantNs(1'001'000'000 + more);
+    bench.step();
+    EXPECT_EQ(bench.health().skipped, 1000u) << more;
+    EXPECT_EQ(bench.runner.due(), bench.clock.now() + InstantNs(more == 0 ? 0 : 1'000'000));
+  }
+}
+
+TEST(Runner, WakeUpLaterByMoreThanASecondIsAClockFault) {
+  for (const int more : {0, 1}) {
+    RunnerBench bench;
+    while (bench.rig.cycle().mode() != Mode::kReady) bench.step();
+    bench.clock.late = InstantNs(1'000'000'000 + more);
+    EXPECT_EQ(bench.step().latched, more == 0 ? Fault::kNone : Fault::kClock) << more;
+  }
+}
+
 }  // namespace
 }  // namespace vernier::runner_test

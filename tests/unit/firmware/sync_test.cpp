@@ -154,5 +154,40 @@ TEST(Sync, NoMoreThanAThousandLeftOutSignsAreCounted) {
   EXPECT_EQ(rig.cycle().health().skipped, 1000u);
 }
 
+struct SignAt {
+  std::int64_t after_due_ns;  // of a sign, from the moment at which it is due
+  std::int64_t woke_ns;       // beginning of the tick, from the same moment
+  std::uint64_t skipped;
+};
+
+// A sign within half a period of the due time starts the tick; an earlier one is ignored, and a later one
+// shows that the controller left out a sign.
+TEST(Sync, SignAtHalfAPeriodStartsTheTickAndOneNanosecondMoreDiffers) {
+  constexpr SignAt kCases[] = {{-500'000, -500'000, 0}, {-500'001, 0, 0},          {500'000, 500'000, 0},
+                               {500'001, 500'001, 1},   {1'500'000, 1'500'000, 1}, {1'500'001, 1'500'001, 2}};
+  for (const SignAt& wanted : kCases) {
+    SyncBench bench;
+    for (int i = 1; i <= 5; ++i) bench.signs.at.emplace_back(i * 1'000'000);
+    bench.signs.at.emplace_back(6'000'000 + wanted.after_due_ns);
+    if (wanted.after_due_ns < wanted.woke_ns) bench.signs.at.emplace_back(6'000'000);
+    for (int i = 1; i <= 5; ++i) bench.step();
+    EXPECT_EQ(bench.step(), InstantNs(6'000'000 + wanted.woke_ns)) << wanted.after_due_ns;
+    EXPECT_EQ(bench.health().skipped, wanted.skipped) << wanted.after_due_ns;
+  }
+}
+
+TEST(Sync, SignThatIsLaterByMoreThanASecondIsAClockFault) {
+  for (const int more : {0, 1}) {
+    SyncBench bench;
+    for (int i = 1; i <= 300; ++i) bench.signs.at.emplace_back(i * 1'000'000);
+    for (int i = 1; i <= 300; ++i) bench.step();
+    ASSERT_EQ(bench.report.mode, Mode::kReady);
+    bench.clock.sleep_until(InstantNs(1'301'000'000 + more));  // the next one is due at 301 ms
+    bench.signs.at.push_back(bench.clock.now());
+    bench.step();
+    EXPECT_EQ(bench.report.latched, more == 0 ? Fault::kNone : Fault::kClock) << more;
+  }
+}
+
 }  // namespace
 }  // namespace vernier::sync_test

@@ -671,6 +671,13 @@ TEST_F(Upload, LinesThatNoCacheHoldsAreWorkToo) {
   EXPECT_FALSE((WorkBudget{work, 7}.covers(program, {})));
   EXPECT_TRUE((WorkBudget{work + 7 * lines, 7}.covers(program, {})));
   EXPECT_FALSE((WorkBudget{work + 7 * lines - 1, 7}.covers(program, {})));
+  // AND a line costs 2^30 at most
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 30;
+  for (const std::uint64_t price : {kMost, kMost + 1, UINT64_MAX}) {
+    EXPECT_TRUE((WorkBudget{work + kMost * lines, price}.covers(program, {}))) << price;
+    EXPECT_FALSE((WorkBudget{work + kMost * lines - 1, price}.covers(program, {}))) << price;
+  }
+  EXPECT_TRUE((WorkBudget{work + (kMost - 1) * lines, kMost - 1}.covers(program, {})));
   // AND even stations need no search
   look_up.table.grid_multiplier = 1;
   EXPECT_LE(lines_of(program.equation), 2u);
@@ -714,6 +721,46 @@ TEST_F(Upload, PriceOfALineIsItsTimeInOperations) {
   const double wanted = done * (1e6 / 4096) / 10;
   EXPECT_NEAR(static_cast<double>(budget.of_line), wanted, 1e-4 * wanted) << "both are rounded";
   EXPECT_EQ(memory[0], 0u) << "whole rounds through all lines end where they began";
+}
+
+// The measurement visits as many lines as fit, a power of two, each once; the words between stay.
+TEST_F(Upload, PriceOfALineVisitsEachLineOnce) {
+  struct {
+    std::size_t words, lines;
+  } const cases[] = {{32, 2}, {1023, 32}, {1024, 64}, {1025, 64}, {2048, 128}};
+  for (const auto& wanted : cases) {
+    constexpr std::uint32_t kUntouched = 0xdeadbeef;
+    SteppedClock clock;
+    std::vector<std::uint32_t> memory(wanted.words, kUntouched);
+    measured_work_budget(clock, TimeUs(1000), memory);
+    // The word of line 0 was replaced at the end: by 0, as whole rounds end where they began.
+    std::vector<int> named(wanted.lines, 0);
+    for (std::size_t i = 0; i < wanted.words; ++i)
+      if (i % 16 != 0 || i / 16 >= wanted.lines) {
+        EXPECT_EQ(memory[i], kUntouched) << wanted.words << " " << i;
+      } else if (i > 0) {
+        ASSERT_LT(memory[i], wanted.lines);
+        ++named[memory[i]];
+      }
+    EXPECT_EQ(memory[0], 0u);
+    EXPECT_EQ(std::count(named.begin(), named.end(), 1), static_cast<std::ptrdiff_t>(wanted.lines) - 1);
+    EXPECT_EQ(std::count(named.begin(), named.end(), 0), 1) << "which line 0 named";
+  }
+  std::vector<std::uint32_t> less(31);
+  SteppedClock clock;
+  EXPECT_EQ(measured_work_budget(clock, TimeUs(1000), less).of_line, 0u) << "one line has no jump";
+}
+
+// The measurement has an end: eight tries of the operations, and eight of the jumps.
+TEST_F(Upload, WorkIsMeasuredInSixteenTries) {
+  struct : Clock {
+    InstantNs now() noexcept override { return InstantNs(10 * ++calls); }
+    HalFault sleep_until(InstantNs) noexcept override { return HalFault::kNone; }
+    int calls = 0;
+  } clock;
+  std::vector<std::uint32_t> memory(16 * 16);
+  measured_work_budget(clock, TimeUs(1000), memory);
+  EXPECT_EQ(clock.calls, 2 * 16) << "two looks at the clock in a try";
 }
 
 TEST_F(Upload, WorkCountsTermsSoThatNoImageStallsTheTick) {
@@ -818,6 +865,15 @@ TEST_F(Upload, ImageThatFillsTheStoreIsTaken) {
   UploadRig fits(exact, key_), too_small(less, key_);
   EXPECT_EQ(fits.send(bytes).fault, UploadFault::kNone);
   EXPECT_EQ(too_small.send(bytes).fault, UploadFault::kTooLarge);
+}
+
+TEST_F(Upload, BeginsWithTheSizeOfAHeaderToThatOfTheStore) {
+  UploadRig rig(store_, key_);
+  constexpr auto kHeader = static_cast<std::uint32_t>(sizeof(UploadHeader));
+  EXPECT_EQ(rig.uploader().begin(kHeader - 1).fault, UploadFault::kNotAnUpload);
+  EXPECT_EQ(rig.uploader().begin(kHeader).fault, UploadFault::kNone);
+  EXPECT_EQ(rig.uploader().begin(store_.capacity()).fault, UploadFault::kNone);
+  EXPECT_EQ(rig.uploader().begin(store_.capacity() + 1).fault, UploadFault::kTooLarge);
 }
 
 TEST_F(Upload, LatestTimeOfIssueIsTakenAndNoLaterOne) {
