@@ -154,23 +154,24 @@ std::string doubt_of_course(const Evidence& evidence, const Pool& pool, const st
   if (!evidence.noise_known()) return {};
   const auto drivers = drivers_of(evidence.machine(), pool.candidate(item));
   const ShapeThresholds& limits = evidence.thresholds().shape;
-  const Eigen::MatrixXd shape = drivers.empty() ? Eigen::MatrixXd() : held_columns(evidence, pool, item);
+  const Eigen::MatrixXd shape = held_columns(evidence, pool, item);
   if (shape.norm() == 0) return {};
-  const auto doubted = [&](const Eigen::MatrixXd& course) {
+  const auto doubted = [&](const Eigen::MatrixXd& course, double chance) {
     const Beside beside = beside_of(evidence, pool, items, item, products(shape, course));
-    return beside.share > limits.course_share && beside.log_p < limits.course_chance ? beside.share : 0.0;
+    return beside.share > limits.course_share && beside.log_p < chance ? beside.share : 0.0;
   };
-  const int most = static_cast<int>(limits.most_half_waves);
-  if (std::any_of(drivers.begin(), drivers.end(), is_of_time))
-    if (const double share = doubted(courses(evidence, most)); share > 0)
-      return fmt::format(
-          "{} explains the error at its location only in part: {:.0f} % of this error has another course "
-          "over "
-          "the rows. The error depends on a quantity that no column records",
-          pool.candidate(item).spoken, 100 * share);
+  // An effect that follows nothing in time must keep its size; every effect is asked, so the level is strict.
+  const bool of_time = std::any_of(drivers.begin(), drivers.end(), is_of_time);
+  if (const double share = doubted(courses(evidence, static_cast<int>(limits.most_half_waves)),
+                                   of_time ? limits.course_chance : limits.change_chance);
+      share > 0)
+    return fmt::format(
+        "{} explains the error at its location only in part: {:.0f} % of this error has another course over "
+        "the rows. The error depends on a quantity that no column records",
+        pool.candidate(item).spoken, 100 * share);
   for (const auto& [kind, index] : drivers)
     if (static_cast<SymbolKind>(kind) == SymbolKind::kDirection)
-      if (const double share = doubted(previous_moves(evidence, index)); share > 0)
+      if (const double share = doubted(previous_moves(evidence, index), limits.course_chance); share > 0)
         return fmt::format(
             "{} depends on the approach direction only, but {:.0f} % of the error at its location depends on "
             "the previous move (its length, or its share of the whole move)",

@@ -103,6 +103,21 @@ TEST(Course, AThermometerThatFollowsTheErrorInPartIsNotItsCause) {
   EXPECT_EQ(cause.ladder.at(1).effect, "thermal-scale");
 }
 
+/// A load that no column records bends the beam: on average a curve of the axis, but not at any time.
+TEST(Course, ACurveThatChangesWithAnUnknownLoadIsNoStraightness) {
+  const Poses poses;
+  const Eigen::ArrayXd part = poses.x / 500, sag = 0.012 * part * (1 - part);
+  Eigen::ArrayXd load(Poses::kRows);
+  for (int i = 0; i < Poses::kRows; ++i) load[i] = i / 40 % 3 * 0.9;
+
+  const Diagnosis loaded = diagnosis_of(poses, sag * load, hall(poses));
+  const Diagnosis steady = diagnosis_of(poses, sag, hall(poses));
+
+  EXPECT_TRUE(names_nothing(loaded)) << "seed " << kSeed << ": " << loaded.explanation;
+  EXPECT_EQ(steady.verdict, Verdict::kMissingEffect) << steady.explanation;
+  EXPECT_EQ(steady.ladder.at(1).effect, "positioning-error");
+}
+
 /// A drag along the previous move grows with its share in Y: the sense alone explains most of it.
 TEST(Course, ADragAlongThePreviousMoveIsNoPlay) {
   const Poses poses;
