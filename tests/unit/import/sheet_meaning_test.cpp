@@ -56,6 +56,22 @@ const Case kCases[] = {
     {"MeanDeviationBesideTheActual",
      "Soll X [mm];Ist X [mm];Mittlere Abweichung X [um]\n0;0,001;2\n0;0,003;2\n9;9,001;1\n",
      "X[mm],x[mm]\n0,0.001\n0,0.003\n9,9.001\n"},
+    // A factor beside the unit.
+    {"TheFactorOfATitle", "Abweichung in 1/1000 mm\nX [mm];hin;zurück\n0;1;2\n100;3;4\n200;2;1\n",
+     "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n100,1,1,100.003\n"},
+    {"TheDecimalFactorOfATitle", "Abweichung in 0,01 mm\nX [mm];hin;zurück\n0;1;2\n100;3;4\n200;2;1\n",
+     "X[mm],dirX,run,x[mm]\n0,1,1,0.01\n100,1,1,100.03\n"},
+    {"AnUnknownFactorOfATitle", "Abweichung in 0,002 mm\nX [mm];hin;zurück\n0;1;2\n100;3;4\n200;2;1\n",
+     "refused: s.csv:2: \"Deviation\": the unit [0,002 mm] has a factor that is not known; convert the "
+     "values"},
+    {"AnUnknownFactorOfTheRuns", "X [mm];hin [0,5 um];zurück [0,5 um]\n0;1;2\n100;3;4\n200;2;1\n",
+     "refused: s.csv:1: \"Deviation\": the unit [0,5 um] has a factor that is not known; convert the values"},
+    {"TheUnitBelowAFactor", "Soll X;Abweichung X Hundertstel\nmm;mm\n0;1\n100;3\n200;2\n",
+     "X[mm],x[mm]\n0,0.01\n100,100.03\n200,200.02\n"},
+    {"AnUnknownFactor", "X [mm];Abweichung X 1/20 mm\n0;1\n100;3\n200;2\n",
+     "refused: s.csv:1: \"Abweichung X 1/20 mm\": the unit [1/20 mm] has a factor that is not known; convert "
+     "the values to a known unit, or, if they already are in one, state it in place of UNIT: --deviation "
+     "\"X[UNIT]=Abweichung X 1/20 mm\"; known are mm um"},
     // Thousands.
     {"ThePositionBesideDecides", "X [mm];x [mm]\n0;0.001\n500;500.002\n1.000;1000.002\n",
      "X[mm],x[mm]\n0,0.001\n500,500.002\n1000,1000.002\nnote: \"X [mm]\": 1 cell such as \"1.000\" (line 4) "
@@ -291,10 +307,16 @@ TEST(SheetUnit, DivisionsOfADialGaugeAreUnits) {
 
 TEST(SheetUnit, AnUnknownUnitHasAnOptionThatReadsIt) {
   const std::string table = "Soll X [mm];Abw. X [Skt]\n0;0\n100;3\n";
-  EXPECT_THAT(read(table), HasSubstr("state the unit, for example --deviation \"X[0.01mm]=Abw. X [Skt]\""));
+  EXPECT_THAT(
+      read(table),
+      AllOf(HasSubstr("state it in place of UNIT: --deviation \"X[UNIT]=Abw. X [Skt]\"; known are mm"),
+            Not(HasSubstr("X[0.01mm]"))));
   SheetWords words;
   words.deviations = {"X[0.01mm]=Abw. X [Skt]"};
   EXPECT_THAT(read(table, words), StartsWith("X[mm],x[mm]\n0,0\n100,100.03\n"));
+  SheetWords all;  // a unit for the headings without one
+  all.unit = "mm";
+  EXPECT_THAT(read(table, all), HasSubstr("has a factor that is not known"));
 }
 
 // Directions that the order of the rows contradicts.

@@ -17,6 +17,7 @@
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
 #include "tools/sheet/sheet_number.h"
+#include "tools/sheet/unit_factor.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -196,16 +197,31 @@ double spread_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
   return most - least;
 }
 
-/// The unit of lengths or angles in a title: "Abweichungen in µm (Soll-Ist)".
-std::string unit_in(const std::string& title) {
-  for (const std::string& word : text::words_in(title, " \t,;:")) {
+/// The unit of lengths or angles in a title, in a heading without name: "Abweichungen in µm (Soll-Ist)",
+/// "Abweichung in 1/1000 mm".
+sheet::Heading unit_in(const std::string& title) {
+  // A comma in a number is no comma of the sentence.
+  const std::vector<std::string> parts = text::words_in(title, " \t;:");
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const std::string word = parts[k].ends_with(',') ? parts[k].substr(0, parts[k].size() - 1) : parts[k];
     const auto unit = sheet::unit_meant(word);
     // "in" and "as" are words of a sentence.
     if (!unit || word == "in" || word == "as" || word.size() < 2) continue;
     const auto dimension = format::find_unit(*unit)->dimension;
-    if (dimension == format::Dimension::kLength || dimension == format::Dimension::kAngle) return *unit;
+    if (dimension != format::Dimension::kLength && dimension != format::Dimension::kAngle) continue;
+    // "Zehntel" before "µm" is no tenth of a millimetre, and the unit follows.
+    std::size_t next = k + 1;
+    while (next < parts.size() && (parts[next] == "of" || parts[next] == "a" || parts[next] == "an")) ++next;
+    if (sheet::factor_at_end(word) && next < parts.size() && sheet::unit_meant(parts[next]) &&
+        parts[next] != "in")
+      continue;
+    std::string phrase;
+    for (std::size_t i = 0; i <= k; ++i) phrase += (i == 0 ? "" : " ") + (i == k ? word : parts[i]);
+    sheet::Heading heading = sheet::parse_heading(phrase);
+    if (heading.unit.empty() && heading.unknown_unit.empty()) heading.unit = *unit;
+    return heading;
   }
-  return sheet::parse_heading(title).unit;
+  return sheet::parse_heading(title);
 }
 
 /// Kind of the readings, as a heading of one column that the import understands.
@@ -213,7 +229,9 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
                                    const std::vector<RunColumn>& runs,
                                    const std::vector<std::size_t>& others) {
   RunColumn all = runs.front();
+  std::string unknown;  // a unit that the formats do not have
   for (const RunColumn& one : runs) {
+    if (unknown.empty()) unknown = table.headings[one.column].unknown_unit;
     all.deviation |= one.deviation;
     all.measured |= one.measured;
     all.turned |= one.turned;
@@ -227,7 +245,10 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
     });
     if (!deviation) continue;
     all.deviation = all.deviation || !all.measured;
-    if (all.unit.empty()) all.unit = unit_in(title);
+    if (!all.unit.empty() || !unknown.empty()) continue;
+    const sheet::Heading stated = unit_in(title);
+    all.unit = stated.unit;
+    unknown = stated.unknown_unit;
   }
   if (!all.deviation && !all.measured) {
     // Readings that go as far as the positions do are positions.
@@ -236,7 +257,7 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
       const double ratio = spread_of(sheet, table, other) > 0 ? read / spread_of(sheet, table, other) : 0;
       if (!(ratio > 0.9 && ratio < 1.1)) continue;
       all.measured = true;
-      if (all.unit.empty()) all.unit = table.headings[other].unit;
+      if (all.unit.empty() && unknown.empty()) all.unit = table.headings[other].unit;
     }
   }
   sheet::Heading heading;
@@ -245,7 +266,8 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
   heading.text = heading.name + (all.length   ? all.turned ? " (positive = short)" : " (positive = long)"
                                  : all.turned ? " (nominal-actual)"
                                               : "");
-  heading.unit = all.unit;
+  heading.unit = unknown.empty() ? all.unit : "";
+  heading.unknown_unit = unknown;
   return heading;
 }
 
