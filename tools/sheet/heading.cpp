@@ -389,7 +389,8 @@ Heading parse_heading(std::string_view cell) {
     else
       return false;
     heading.name = text::trimmed(text.substr(0, name_end));
-    while (!heading.name.empty() && std::string("/,;:-").find(heading.name.back()) != std::string::npos)
+    // A sign alone is the name of an approach direction: "- [um]".
+    while (heading.name.size() > 1 && std::string("/,;:-").find(heading.name.back()) != std::string::npos)
       heading.name = text::trimmed(heading.name.substr(0, heading.name.size() - 1));
     return !heading.name.empty();
   };

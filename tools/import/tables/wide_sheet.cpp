@@ -32,6 +32,7 @@ struct RunColumn {
   int sense = 0;
   bool deviation = false, measured = false, turned = false, pos = false;
   bool length = false;    // the sign by the length of the motion: "positiv = zu kurz"
+  bool forth = false;     // the direction by a word of the survey: "hin", "zurück", "forward"
   bool relative = false;  // the direction by a word that is not about the axis: "hin", "forward", "up"
 };
 
@@ -150,6 +151,7 @@ std::optional<RunColumn> run_column(const sheet::Heading& heading) {
       if (by_word != 0) return std::nullopt;
       by_word = sense_said(small);
       column.relative |= says_relative(small) || says_height(small);
+      column.forth |= says_relative(small);
       column.pos |= small == "pos";
     } else if (says_deviation(small)) {
       column.deviation = said = true;
@@ -271,33 +273,42 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
   return heading;
 }
 
-/// Notes "hin" in a table whose positions decrease from row to row: the first approach may have run that way.
-void note_decreasing_positions(sheet::Sheet& sheet, const sheet::SheetTable& table,
-                               const std::vector<RunColumn>& runs, std::size_t position) {
+/// True if the positions decrease from row to row.
+bool positions_decrease(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t position) {
   constexpr std::size_t kEnough = 3;  // fewer rows show no order
-  if (std::none_of(runs.begin(), runs.end(), [](const RunColumn& one) { return one.relative; })) return;
   std::optional<double> before;
   std::size_t rows = 0;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const auto number = sheet::plain_number(sheet.rows[row][position], sheet.decimal_comma);
     const auto value = number ? text::parse_number(*number) : std::nullopt;
     if (!value) continue;
-    if (before && *value >= *before) return;
+    if (before && *value >= *before) return false;
     before = value;
     ++rows;
   }
-  if (rows < kEnough) return;
+  return rows >= kEnough;
+}
+
+/// A table whose positions decrease from row to row. "hin" is the way that the rows go, as in a table with
+/// one row for each reading: the two directions are exchanged, with a note. Up and down, and directions with
+/// positions of their own, only get the note.
+void settle_decreasing_positions(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                 std::vector<RunColumn>& runs, std::size_t position, bool own_positions) {
   const auto forth =
       std::find_if(runs.begin(), runs.end(), [](const RunColumn& one) { return one.sense > 0; });
-  if (forth == runs.end()) return;
-  const std::string& heading = table.headings[forth->column].text;
-  sheet.notes.push_back(
-      fmt::format("\"{}\" is read as the approach in the direction of increasing positions, and the "
-                  "positions of the table "
-                  "decrease from row to row; if this approach ran toward smaller positions, write - in its "
-                  "heading and + in "
-                  "the heading of the other approach",
-                  heading));
+  if (std::none_of(runs.begin(), runs.end(), [](const RunColumn& one) { return one.relative; })) return;
+  if (forth == runs.end() || !positions_decrease(sheet, table, position)) return;
+  const std::string heading = table.headings[forth->column].text;
+  const bool words = std::all_of(runs.begin(), runs.end(), [](const RunColumn& one) { return one.forth; });
+  if (words && !own_positions)
+    for (RunColumn& one : runs) one.sense = -one.sense;
+  sheet.notes.push_back(fmt::format(
+      "\"{}\" is read as the approach in the direction of {} positions, and the positions of the table "
+      "decrease from row to row; if this approach ran toward {} positions, write {} in its heading and {} in "
+      "the heading of the other approach",
+      heading, words && !own_positions ? "decreasing" : "increasing",
+      words && !own_positions ? "larger" : "smaller", words && !own_positions ? "+" : "-",
+      words && !own_positions ? "-" : "+"));
 }
 
 bool belong_together(const std::vector<RunColumn>& runs) {
@@ -379,7 +390,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   if (others.empty() || !belong_together(runs)) return 0;
   const std::map<int, std::size_t> positions = positions_by_direction(sheet, table, others);
   number_runs(sheet, table, runs);
-  note_decreasing_positions(sheet, table, runs, others.front());
+  settle_decreasing_positions(sheet, table, runs, others.front(), !positions.empty());
   constexpr std::size_t kMostCells = 8u << 20;  // 64 MB of numbers
   const std::size_t width = others.size() + 3, data = sheet.rows.size() - table.first_data;
   if (data > kMostCells / width / runs.size())
