@@ -71,17 +71,23 @@ bool is_whole(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-bool is_times(std::string_view word) { return word == "x" || word == "*" || word == "\u00d7"; }
+/// Length of the sign of multiplication at the beginning of a word: x, * or a cross.
+std::size_t times_length(std::string_view word) {
+  if (word.starts_with('x') || word.starts_with('*')) return 1;
+  constexpr std::string_view kCross = "\u00d7";
+  return word.starts_with(kCross) ? kCross.size() : 0;
+}
 
-/// Removes a sign of multiplication at the beginning: "x1000".
+bool is_times(std::string_view word) { return !word.empty() && times_length(word) == word.size(); }
+
+/// Removes a sign of multiplication before a number: "x1000".
 bool take_times(std::string& word) {
-  for (const std::string_view sign : {"x", "*", "\u00d7"})
-    if (word.size() > sign.size() && word.starts_with(sign) &&
-        std::string_view("0123456789.,").find(word[sign.size()]) != std::string_view::npos) {
-      word.erase(0, sign.size());
-      return true;
-    }
-  return false;
+  const std::size_t length = times_length(word);
+  if (length == 0 || word.size() == length ||
+      std::string_view("0123456789.,").find(word[length]) == std::string_view::npos)
+    return false;
+  word.erase(0, length);
+  return true;
 }
 
 bool says_division(std::string word) {
@@ -167,6 +173,10 @@ std::optional<UnitFactor> factor_at_end(std::string_view text) {
   }
   // "Zehntel von 1/100": more than one factor.
   if (begin > 0 && !division && value_of(words[begin - 1].text, false)) factor = {words[begin - 1].begin, 0};
+  // "(Messuhr 1/100) [mm]" may name the instrument only.
+  const std::size_t start = text.find_last_not_of(" \t", factor.begin - (factor.begin > 0 ? 1 : 0));
+  const bool opened = factor.begin == 0 || (start != std::string_view::npos && text[start] == '(');
+  if (text.substr(factor.begin).find(')') != std::string_view::npos && !opened) factor.value = 0;
   // The sign of multiplication says how the values were multiplied, or how they have to be.
   if (times && *value > 1) factor.value = 0;
   return factor;
@@ -191,11 +201,14 @@ std::optional<UnitFactor> factor_behind(std::string_view text) {
   return UnitFactor{words[0].begin, *value};
 }
 
+bool names_factor(std::string_view text) {
+  const std::vector<Word> words = words_of(text);
+  return std::any_of(words.begin(), words.end(),
+                     [](const Word& word) { return says_division(word.text) || value_of(word.text, false); });
+}
+
 bool has_factor(std::string_view unit) {
-  if (unit.find_first_of("0123456789") != std::string_view::npos) return true;
-  for (const Word& word : words_of(unit))
-    if (says_division(word.text) || value_of(word.text, true)) return true;
-  return false;
+  return unit.find_first_of("0123456789") != std::string_view::npos || names_factor(unit);
 }
 
 std::optional<std::string> unit_times(double factor, std::string_view unit) {

@@ -23,6 +23,9 @@ std::optional<UnitFactor> factor_behind(std::string_view text);
 /// True if a unit has a factor beside it, before or behind it: "0,5 um", "mm x1000", "um/100".
 bool has_factor(std::string_view unit);
 
+/// True if a text has a word that is a factor of a unit, at any place: "Messuhr 1/100", "Skt".
+bool names_factor(std::string_view text);
+
 /// The unit that is `factor` times the unit; nullopt if the formats do not have it.
 std::optional<std::string> unit_times(double factor, std::string_view unit);
 

@@ -70,6 +70,14 @@ const Case kCases[] = {
      "X[mm],x[mm]\n0,0.01\n100,100.03\n200,200.02\n"},
     {"TheUnitBelowAnotherUnit", "Soll X;Abweichung X Hundertstel\nmm;mm\n0;1\n100;3\n200;2\n",
      "refused: s.csv:2: \"mm\": the heading"},
+    {"AMinusBehindTheNumber", "X [mm];dX [um]\n0;4,5-\n100;1,5\n200;2,5-\n",
+     "X[mm],x[mm]\n0,-0.0045\n100,100.0015\n200,199.9975\n"},
+    {"AFactorInBracketsWithOtherWords", "X [mm];dX (Messuhr 1/100) [mm]\n0;6\n100;7\n200;8\n",
+     "refused: s.csv:1: \"dX (Messuhr 1/100) [mm]\": the unit ["},
+    {"AFactorElsewhereInTheHeading", "X [mm];dX (1/100 Messuhr) [mm]\n0;6\n100;7\n200;8\n",
+     "refused: s.csv:1: \"dX (1/100 Messuhr) [mm]\": half of the deviations are larger than 7 mm, and X "
+     "moves "
+     "by 200 mm: no machine has such errors; the heading has a factor that is not read"},
     {"AnUnknownFactor", "X [mm];Abweichung X 1/20 mm\n0;1\n100;3\n200;2\n",
      "refused: s.csv:1: \"Abweichung X 1/20 mm\": the unit [1/20 mm] has a factor that is not known; convert "
      "the values to a known unit, or, if they already are in one, state it in place of UNIT: --deviation "

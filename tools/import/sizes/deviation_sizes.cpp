@@ -13,6 +13,7 @@
 #include "tools/format/units.h"
 #include "tools/maths/median.h"
 #include "tools/sheet/sheet_number.h"
+#include "tools/sheet/unit_factor.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
@@ -95,6 +96,12 @@ std::string unit_remedy(const sheet::SheetTable& table, const SizedColumn& colum
                                 ? fmt::format("state another unit (--unit, or --deviation \"{}[um]={}\")",
                                               column.name, heading.text)
                                 : "correct the unit in the heading";
+  // The option would confirm a unit without its factor.
+  if (sheet::names_factor(heading.text))
+    return fmt::format(
+        "the heading has a factor that is not read as part of the unit [{}]: write the unit with "
+        "its factor in brackets, such as [0.01mm], or convert the values",
+        column.unit);
   return fmt::format("if the unit [{}] is wrong, {}; if it is right, give --deviation \"{}[{}]={}\"",
                      column.unit, wrong, column.name, column.unit, heading.text);
 }
