@@ -177,8 +177,8 @@ std::optional<std::string> factor_and_unit(std::string_view words) {
 
 /// A factor before the unit, at the end of the name, or behind the unit belongs to the unit: "1/100 [mm]",
 /// "Zehntel um", "[mm] x1000". If the formats do not have such a unit, the unit of the heading is unknown.
-void take_factor(Heading& heading, std::string_view behind) {
-  const auto before = factor_at_end(heading.name);
+void take_factor(Heading& heading, std::string_view behind, bool bare = false) {
+  const auto before = factor_at_end(heading.name, bare);
   const auto after = before ? std::nullopt : factor_behind(behind);
   if (heading.unit.empty() || (!before && !after)) return;
   const auto unit = unit_times(before ? before->value : after->value, heading.unit);
@@ -429,7 +429,7 @@ Heading parse_heading(std::string_view cell) {
     if (rest.empty() || at == 0 || (weak && (rest.size() < 2 || text::in_small_letters(rest) == "min")))
       continue;
     if (!take(at + between.size(), text.size(), at)) continue;
-    take_factor(heading, "");
+    take_factor(heading, "", true);
     return heading;
   }
   return heading;

@@ -114,6 +114,11 @@ bool counts(std::string word) {
   return kWords.contains(word);
 }
 
+/// "X" in "Abweichung X 2 um".
+bool is_axis_letter(std::string_view text, const Word& word) {
+  return word.text.size() == 1 && std::isupper(static_cast<unsigned char>(text[word.begin])) != 0;
+}
+
 /// The value of one word; 0: a factor that is not clear. Whole numbers count only if `number` is true.
 std::optional<double> value_of(std::string word, bool number) {
   while (word.size() > 1 && (word.back() == '-' || word.back() == ':')) word.pop_back();
@@ -139,7 +144,7 @@ std::optional<double> value_of(std::string word, bool number) {
 
 }  // namespace
 
-std::optional<UnitFactor> factor_at_end(std::string_view text) {
+std::optional<UnitFactor> factor_at_end(std::string_view text, bool bare) {
   const std::vector<Word> words = words_of(text);
   std::size_t end = words.size();
   while (end > 1 && joins(words[end - 1].text)) --end;
@@ -162,7 +167,8 @@ std::optional<UnitFactor> factor_at_end(std::string_view text) {
   while (before > 0 && joins(words[before - 1].text)) --before;
   const bool division = before > 0 && says_division(words[before - 1].text);
   const bool in = begin > 0 && words[begin - 1].text == "in";
-  const auto value = value_of(word, times || division || in);
+  const bool after_axis = begin > 1 && bare && is_axis_letter(text, words[begin - 1]);
+  const auto value = value_of(word, times || division || in || after_axis);
   if (!value) return std::nullopt;
   if (begin > 0 && !times && !division && (words[begin - 1].text == "=" || counts(words[begin - 1].text)))
     return std::nullopt;
@@ -178,7 +184,7 @@ std::optional<UnitFactor> factor_at_end(std::string_view text) {
   const bool opened = factor.begin == 0 || (start != std::string_view::npos && text[start] == '(');
   if (text.substr(factor.begin).find(')') != std::string_view::npos && !opened) factor.value = 0;
   // The sign of multiplication says how the values were multiplied, or how they have to be.
-  if (times && *value > 1) factor.value = 0;
+  if ((times || (after_axis && !in)) && *value > 1) factor.value = 0;
   return factor;
 }
 

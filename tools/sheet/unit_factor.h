@@ -15,7 +15,9 @@ struct UnitFactor {
 
 /// The factor at the end of a text that stands before a unit. A whole number is a factor only after "in", x
 /// or a word for divisions, so "Lauf 1" and "X 500" have none. nullopt: no factor.
-std::optional<UnitFactor> factor_at_end(std::string_view text);
+/// bare: the unit has no brackets; then a whole number behind the letter of an axis is a factor too, as in
+/// "Abweichung X 2 um".
+std::optional<UnitFactor> factor_at_end(std::string_view text, bool bare = false);
 
 /// The factor that a text behind a unit consists of: "in Hundertstel", "x1000", "(1/100)"; nullopt otherwise.
 std::optional<UnitFactor> factor_behind(std::string_view text);

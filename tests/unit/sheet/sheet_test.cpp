@@ -120,8 +120,9 @@ TEST(Heading, PartsNameAndUnit) {
   EXPECT_EQ(parts("dC in 1/100 °"), "dC|0.01deg");
   EXPECT_EQ(parts("dC Tausendstel Grad"), "dC|0.001deg");
   // A factor that makes no known unit leaves the column without one.
-  for (const char* text : {"dX 0,5 µm", "dX in 2 µm", "dX Skt 0,002 mm", "dX 0,02 mm", "dX 1/20 mm",
-                           "dX [mm] x1000", "dX mm x 100", "dX in mm/100", "dX [10e-3 mm]", "dX Skt [mm]"}) {
+  for (const char* text :
+       {"dX 0,5 µm", "dX in 2 µm", "Abweichung X 2 µm", "Abweichung X 10 mm", "dX Skt 0,002 mm", "dX 0,02 mm",
+        "dX 1/20 mm", "dX [mm] x1000", "dX mm x 100", "dX in mm/100", "dX [10e-3 mm]", "dX Skt [mm]"}) {
     EXPECT_EQ(parse_heading(text).unit, "") << text;
     EXPECT_TRUE(has_factor(parse_heading(text).unknown_unit)) << text;
   }
