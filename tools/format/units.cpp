@@ -12,7 +12,7 @@ namespace {
 /// Standard gravity, mm/s^2 (ISO 80000-3).
 constexpr double kStandardGravity = 9806.65;
 
-constexpr std::array<Unit, 43> kUnits = {{
+constexpr std::array<Unit, 48> kUnits = {{
     {"", Dimension::kNone, 1, 0},
     {"mm", Dimension::kLength, 1, 0},
     {"um", Dimension::kLength, 1e-3, 0},
@@ -20,10 +20,15 @@ constexpr std::array<Unit, 43> kUnits = {{
     {"in", Dimension::kLength, 25.4, 0},
     {"thou", Dimension::kLength, 0.0254, 0},
     {"uin", Dimension::kLength, 25.4e-6, 0},
+    {"nm", Dimension::kLength, 1e-6, 0},
+    {"cm", Dimension::kLength, 10, 0},
+    {"0.1um", Dimension::kLength, 1e-4, 0},
     {"0.1mm", Dimension::kLength, 0.1, 0},
     {"0.01mm", Dimension::kLength, 0.01, 0},  // a division of a dial gauge
     {"0.0001in", Dimension::kLength, 0.00254, 0},
     {"deg", Dimension::kAngle, 1, 0},
+    {"0.01deg", Dimension::kAngle, 0.01, 0},
+    {"0.001deg", Dimension::kAngle, 0.001, 0},
     {"rad", Dimension::kAngle, maths::kDegPerRad, 0},
     {"mrad", Dimension::kAngle, maths::kDegPerRad / 1000, 0},
     {"urad", Dimension::kAngle, maths::kDegPerRad / 1e6, 0},

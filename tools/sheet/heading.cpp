@@ -12,6 +12,7 @@
 #include "tools/format/units.h"
 #include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"
+#include "tools/sheet/unit_factor.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
@@ -161,6 +162,56 @@ std::optional<std::string> decimal_part(std::string_view words) {
   return unit.empty() || !format::find_unit(unit) ? std::nullopt : std::optional(unit);
 }
 
+/// "Zehntel um", "1/10um", "10^-3 mm": a factor and a unit, if the formats have the unit that they make.
+std::optional<std::string> factor_and_unit(std::string_view words) {
+  const std::size_t digit = words.find_last_of("0123456789");
+  for (const std::size_t at : {words.rfind(' '), words.rfind('-'), digit}) {
+    if (at == std::string_view::npos || at == 0 || at + 1 >= words.size()) continue;
+    const std::string_view rest = words.substr(at + 1);
+    const auto factor = factor_at_end(words.substr(0, at + (at == digit ? 1 : 0)));
+    if (!factor || factor->begin != 0 || rest.find_first_of("0123456789") != std::string_view::npos) continue;
+    if (const auto unit = unit_meant(rest)) return unit_times(factor->value, *unit);
+  }
+  return std::nullopt;
+}
+
+/// A factor before the unit, at the end of the name, or behind the unit belongs to the unit: "1/100 [mm]",
+/// "Zehntel um", "[mm] x1000". If the formats do not have such a unit, the unit of the heading is unknown.
+void take_factor(Heading& heading, std::string_view behind, bool bare = false) {
+  const auto before = factor_at_end(heading.name, bare);
+  const auto after = before ? std::nullopt : factor_behind(behind);
+  if (heading.unit.empty() || (!before && !after)) return;
+  const auto unit = unit_times(before ? before->value : after->value, heading.unit);
+  if (!unit)
+    heading.unknown_unit = before ? text::trimmed(heading.name.substr(before->begin) + " " + heading.unit)
+                                  : heading.unit + " " + text::trimmed(behind);
+  heading.unit = unit ? *unit : "";
+  if (before) heading.name = text::trimmed(heading.name.substr(0, before->begin));
+  for (const std::string_view end : {" in", "(", "["})
+    if (heading.name.ends_with(end))
+      heading.name = text::trimmed(heading.name.substr(0, heading.name.size() - end.size()));
+  if (heading.name.empty()) heading.name = heading.text;
+}
+
+/// "Abweichung mm x 100", "Abweichung in mm/100": the unit and a factor behind it, without brackets.
+bool factor_behind_a_word(Heading& heading) {
+  const std::string& text = heading.text;
+  for (std::size_t at = 1; at < text.size(); ++at) {
+    if (text[at - 1] != ' ') continue;
+    for (std::size_t end = at + 1; end < text.size() && text[end - 1] != ' '; ++end) {
+      const bool parts = text[end] == ' ' || text[end] == '/' || text[end] == '*';
+      if (!parts || !factor_behind(text.substr(end))) continue;
+      const auto unit = unit_meant(text.substr(at, end - at));
+      if (!unit || end - at < 2 || text.compare(at, end - at, "in") == 0) continue;
+      heading.unit = *unit;
+      heading.name = text::trimmed(text.substr(0, at));
+      take_factor(heading, text.substr(end));
+      return true;
+    }
+  }
+  return false;
+}
+
 bool is_numeric(const std::string& cell, const Sheet& sheet) {
   return plain_number(cell, sheet.decimal_comma).has_value();
 }
@@ -284,6 +335,7 @@ Heading heading_of_two(const std::string& upper, const std::string& lower) {
   both.name = text::trimmed(above.name + " " + below.name);
   both.unit = unit ? *unit : !below.unit.empty() ? below.unit : above.unit;
   both.unknown_unit = below.unknown_unit.empty() ? above.unknown_unit : below.unknown_unit;
+  if (unit && above.unit.empty() && both.unknown_unit.empty()) take_factor(both, "");
   return both;
 }
 
@@ -309,7 +361,8 @@ std::optional<std::string> unit_meant(std::string_view word) {
   // Capital letters that do not belong there: MM, Sec. Not for a single one: A is no a, M no m.
   if (bare.size() > 1)
     if (const auto unit = format::find_unit(small)) return std::string(unit->name);
-  return decimal_part(bare);
+  if (const auto part = decimal_part(bare)) return part;
+  return factor_and_unit(bare);
 }
 
 std::optional<std::pair<std::string, std::string>> number_and_unit(std::string_view cell,
@@ -336,7 +389,8 @@ Heading parse_heading(std::string_view cell) {
     else
       return false;
     heading.name = text::trimmed(text.substr(0, name_end));
-    while (!heading.name.empty() && std::string("/,;:-").find(heading.name.back()) != std::string::npos)
+    // A sign alone is the name of an approach direction: "- [um]".
+    while (heading.name.size() > 1 && std::string("/,;:-").find(heading.name.back()) != std::string::npos)
       heading.name = text::trimmed(heading.name.substr(0, heading.name.size() - 1));
     return !heading.name.empty();
   };
@@ -344,7 +398,13 @@ Heading parse_heading(std::string_view cell) {
     const auto begin = text.rfind(open), end = text.rfind(close);
     if (begin == std::string::npos || end == std::string::npos || end < begin || begin == 0) continue;
     if (take(begin + 1, end, begin)) {
-      heading.name = text::trimmed(heading.name + " " + text.substr(end + 1));
+      const std::string behind = text.substr(end + 1);
+      if (!factor_behind(behind)) {
+        take_factor(heading, "");
+        heading.name = text::trimmed(heading.name + " " + behind);
+      } else {
+        take_factor(heading, behind);
+      }
       return heading;
     }
     if (open == '[') {
@@ -360,6 +420,7 @@ Heading parse_heading(std::string_view cell) {
       heading.name = text::trimmed(heading.name.substr(0, heading.name.size() - 3));
     return heading;
   }
+  if (factor_behind_a_word(heading)) return heading;
   for (const std::string_view between : {" in ", " ", "/", ",", "_"}) {
     const auto at = text.rfind(between);
     // After a blank or _ a part of the name is more frequent than a unit: only units that do not end a name.
@@ -367,7 +428,9 @@ Heading parse_heading(std::string_view cell) {
     const bool weak = between == " " || between == "_";
     if (rest.empty() || at == 0 || (weak && (rest.size() < 2 || text::in_small_letters(rest) == "min")))
       continue;
-    if (take(at + between.size(), text.size(), at)) return heading;
+    if (!take(at + between.size(), text.size(), at)) continue;
+    take_factor(heading, "", true);
+    return heading;
   }
   return heading;
 }
@@ -413,7 +476,9 @@ SheetTable parts_of_sheet(const Sheet& sheet) {
       if (const auto unit = unit_meant(sheet.rows[table.units_row][k])) {
         refuse_two_units(sheet, table.units_row, sheet.rows[table.units_row][k], *unit, table.heading_row,
                          one.text, one.unit);
-        one.unit = *unit;
+        const bool stated = !one.unit.empty() || !one.unknown_unit.empty();
+        if (one.unknown_unit.empty()) one.unit = *unit;
+        if (!stated) take_factor(one, "");
       }
     table.headings.push_back(std::move(one));
   }

@@ -46,6 +46,12 @@ bool take_thousands(std::string& text, char sign) {
 
 std::optional<std::string> plain_number(std::string_view cell, bool decimal_comma) {
   std::string text = ascii_signs(cell);
+  // "4.5-" is -4.5 in business software. A whole number with a minus is a run and its direction: "1-".
+  if (text.size() > 2 && text.ends_with('-') && is_digit(text[text.size() - 2]) && is_digit(text.front()) &&
+      text.find_first_of(".,") != std::string::npos) {
+    text.pop_back();
+    text.insert(0, "-");
+  }
   for (const char sign : {' ', '\''})
     if (!take_thousands(text, sign)) return std::nullopt;
   const char point = decimal_comma ? ',' : '.', thousands = decimal_comma ? '.' : ',';

@@ -231,7 +231,7 @@ const Case kCases[] = {
     {"MicroradiansOnTheKeyboard", "X[mm];rx [urad]\n1;2\n", "X[mm],rx[urad]\n1,2\n"},
     {"Microinches", "X [in];dX [µin]\n10;2\n", "X[in],x[mm]\n10,254.0000508\n"},
     {"UnknownUnit", "X [mm];Abweichung X [foo]\n10;2\n",
-     "refused: s.csv:1: \"Abweichung X [foo]\": [foo] is no known unit; known are mm um"},
+     "refused: s.csv:1: \"Abweichung X [foo]\": [foo] is no known unit; convert the values to a known unit"},
     {"RotaryDeviationWithoutUnit", "C [°];Abweichung C\n90;3\n", "--deviation \"C[arcsec]=Abweichung C\""},
     {"NumberedRows", "Nr;X [mm];x [mm]\n#1;0;1\n#2;9;10\n", "Nr,X[mm],x[mm]\n\"#1\",0,1\n\"#2\",9,10\n"},
     {"NumberedRowsSeparatedByBlanks", "Nr X[mm] x[mm]\n#1 0 1\n#2 9 10\n",

@@ -56,6 +56,32 @@ const Case kCases[] = {
     {"MeanDeviationBesideTheActual",
      "Soll X [mm];Ist X [mm];Mittlere Abweichung X [um]\n0;0,001;2\n0;0,003;2\n9;9,001;1\n",
      "X[mm],x[mm]\n0,0.001\n0,0.003\n9,9.001\n"},
+    // A factor beside the unit.
+    {"TheFactorOfATitle", "Abweichung in 1/1000 mm\nX [mm];hin;zurück\n0;1;2\n100;3;4\n200;2;1\n",
+     "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n100,1,1,100.003\n"},
+    {"TheDecimalFactorOfATitle", "Abweichung in 0,01 mm\nX [mm];hin;zurück\n0;1;2\n100;3;4\n200;2;1\n",
+     "X[mm],dirX,run,x[mm]\n0,1,1,0.01\n100,1,1,100.03\n"},
+    {"AnUnknownFactorOfATitle", "Abweichung in 0,002 mm\nX [mm];hin;zurück\n0;1;2\n100;3;4\n200;2;1\n",
+     "refused: s.csv:2: \"Deviation\": the unit [0,002 mm] has a factor that is not known; convert the "
+     "values"},
+    {"AnUnknownFactorOfTheRuns", "X [mm];hin [0,5 um];zurück [0,5 um]\n0;1;2\n100;3;4\n200;2;1\n",
+     "refused: s.csv:1: \"Deviation\": the unit [0,5 um] has a factor that is not known; convert the values"},
+    {"TheUnitBelowAFactor", "Soll X;Abweichung X 1/100\nmm;mm\n0;1\n100;3\n200;2\n",
+     "X[mm],x[mm]\n0,0.01\n100,100.03\n200,200.02\n"},
+    {"TheUnitBelowAnotherUnit", "Soll X;Abweichung X Hundertstel\nmm;mm\n0;1\n100;3\n200;2\n",
+     "refused: s.csv:2: \"mm\": the heading"},
+    {"AMinusBehindTheNumber", "X [mm];dX [um]\n0;4,5-\n100;1,5\n200;2,5-\n",
+     "X[mm],x[mm]\n0,-0.0045\n100,100.0015\n200,199.9975\n"},
+    {"AFactorInBracketsWithOtherWords", "X [mm];dX (Messuhr 1/100) [mm]\n0;6\n100;7\n200;8\n",
+     "refused: s.csv:1: \"dX (Messuhr 1/100) [mm]\": the unit ["},
+    {"AFactorElsewhereInTheHeading", "X [mm];dX (1/100 Messuhr) [mm]\n0;6\n100;7\n200;8\n",
+     "refused: s.csv:1: \"dX (1/100 Messuhr) [mm]\": half of the deviations are larger than 7 mm, and X "
+     "moves "
+     "by 200 mm: no machine has such errors; the heading has a factor that is not read"},
+    {"AnUnknownFactor", "X [mm];Abweichung X 1/20 mm\n0;1\n100;3\n200;2\n",
+     "refused: s.csv:1: \"Abweichung X 1/20 mm\": the unit [1/20 mm] has a factor that is not known; convert "
+     "the values to a known unit, or, if they already are in one, state it in place of UNIT: --deviation "
+     "\"X[UNIT]=Abweichung X 1/20 mm\"; known are mm um"},
     // Thousands.
     {"ThePositionBesideDecides", "X [mm];x [mm]\n0;0.001\n500;500.002\n1.000;1000.002\n",
      "X[mm],x[mm]\n0,0.001\n500,500.002\n1000,1000.002\nnote: \"X [mm]\": 1 cell such as \"1.000\" (line 4) "
@@ -120,9 +146,11 @@ const Case kCases[] = {
      "is the "
      "direction of increasing positions of X"},
     {"HinOfAWideTableTowardSmallerPositions", "X soll [mm];hin [um];zur. [um]\n0;1;2\n-1;3;4\n-2;5;6\n",
-     "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n-1,1,1,-0.997\n-2,1,1,-1.995\n0,-1,1,0.002\n-1,-1,1,-0.996\n-2,-1,1,"
+     "X[mm],dirX,run,x[mm]\n0,-1,1,0.001\n-1,-1,1,-0.997\n-2,-1,1,-1.995\n0,1,1,0.002\n-1,1,1,-0.996\n-2,1,1,"
      "-1."
-     "994\nnote: \"hin [um]\" is read as the approach in the direction of increasing positions"},
+     "994\nnote: \"hin [um]\" is read as the approach in the direction of decreasing positions"},
+    {"UpOfAWideTableTowardSmallerPositions", "Z [mm];down [um];up [um]\n0;1;2\n-1;3;4\n-2;5;6\n",
+     "Z[mm],dirZ,run,z[mm]\n0,-1,1,0.001\n"},
     // Headings.
     {"DeltaBesideTargetAndActual", "Soll X [mm];Ist X [mm];\u0394 [um]\n0;0,001;1\n100;100,002;2\n",
      "X[mm],x[mm]\n0,0.001\n100,100.002\n"},
@@ -291,10 +319,39 @@ TEST(SheetUnit, DivisionsOfADialGaugeAreUnits) {
 
 TEST(SheetUnit, AnUnknownUnitHasAnOptionThatReadsIt) {
   const std::string table = "Soll X [mm];Abw. X [Skt]\n0;0\n100;3\n";
-  EXPECT_THAT(read(table), HasSubstr("state the unit, for example --deviation \"X[0.01mm]=Abw. X [Skt]\""));
+  EXPECT_THAT(
+      read(table),
+      AllOf(HasSubstr("state it in place of UNIT: --deviation \"X[UNIT]=Abw. X [Skt]\"; known are mm"),
+            Not(HasSubstr("X[0.01mm]"))));
   SheetWords words;
   words.deviations = {"X[0.01mm]=Abw. X [Skt]"};
   EXPECT_THAT(read(table, words), StartsWith("X[mm],x[mm]\n0,0\n100,100.03\n"));
+  SheetWords all;  // a unit for the headings without one
+  all.unit = "mm";
+  EXPECT_THAT(read(table, all), HasSubstr("has a factor that is not known"));
+}
+
+TEST(SheetUnit, SizesOfRotaryAxesAreJudgedAsThoseOfLinearAxes) {
+  const auto table = [](const std::string& headings, const std::string& third) {
+    return headings + "\n0;2\n30;3\n60;4\n90;" + third + "\n120;1\n150;2\n";
+  };
+  EXPECT_THAT(read(table("C [deg];dC [arcsec]", "2")), StartsWith("C[deg],rz["));
+  EXPECT_THAT(read(table("C [deg];dC [deg]", "2")),
+              HasSubstr("refused: s.csv:1: \"dC [deg]\": half of the deviations are larger than 2 deg"));
+  EXPECT_THAT(read(table("C [arcsec];dC [deg]", "2")), HasSubstr("are probably exchanged"));
+  EXPECT_THAT(read(table("C [deg];dC [arcsec]", "2000")),
+              HasSubstr("refused: s.csv:5: \"dC [arcsec]\": the deviation 0.556 deg in this row is more than "
+                        "100 times as large as the other ones"));
+}
+
+TEST(SheetUnit, OneDirectionInAnotherUnitIsRefused) {
+  const std::string unlike =
+                        "X [mm];Richtung;dX [um]\n0;+;2\n1;+;3\n2;+;4\n2;-;0.002\n1;-;0.003\n0;-;0.004\n",
+                    zero = "X [mm];Richtung;dX [um]\n0;+;2\n1;+;3\n2;+;4\n2;-;0\n1;-;0\n0;-;0\n";
+  EXPECT_THAT(read(unlike), HasSubstr("the two directions do not have the same unit"));
+  EXPECT_THAT(read(zero), StartsWith("X[mm],dirX,x[mm]\n"));
+  EXPECT_THAT(read("X [mm];+ [um];- [um]\n0;2;0.002\n1;3;0.003\n2;4;0.004\n"),
+              HasSubstr("the two directions do not have the same unit"));
 }
 
 // Directions that the order of the rows contradicts.
@@ -314,6 +371,25 @@ TEST(SheetDirection, SignsAgainstTheOrderOfTheRowsAreRefusedUnlessTheUserAssigns
     EXPECT_THAT(read(table, given), HasSubstr("note: \"Richtung\": the directions ("));
     left.left = {"Richtung"};
     EXPECT_THAT(read(table, left), StartsWith("X[mm],x[mm]\n200,200.001\n"));
+  }
+}
+
+TEST(SheetDirection, SomeRunsWithExchangedDirectionsAreRefusedUnlessTheUserAssignsThem) {
+  for (const auto& [up, down] : {std::pair("+", "-"), std::pair("hin", "zurück"), std::pair("v", "r")}) {
+    std::string table = "Lauf;Soll X [mm];Abw. X [um];Richtung\n";
+    for (int run = 1; run <= 5; ++run) {
+      const bool exchanged = run == 2 || run == 3 || run == 5;  // three of five
+      for (const int x : {0, 100, 200, 300})
+        table += std::to_string(run) + ";" + std::to_string(x) + ";1;" + (exchanged ? down : up) + "\n";
+      for (const int x : {300, 200, 100, 0})
+        table += std::to_string(run) + ";" + std::to_string(x) + ";2;" + (exchanged ? up : down) + "\n";
+    }
+    EXPECT_THAT(read(table),
+                HasSubstr("refused: s.csv:10: \"Richtung\": the directions contradict the order of "
+                          "the rows in 6 of 10 runs, first in line 10"));
+    SheetWords given;
+    given.columns = {"dirX=Richtung"};
+    EXPECT_THAT(read(table, given), HasSubstr("note: \"Richtung\": the directions contradict"));
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet_number.h"
+#include "tools/sheet/unit_factor.h"
 #include "tools/sheet/workbook.h"
 #include "tools/text/error.h"
 
@@ -106,6 +107,32 @@ TEST(Heading, PartsNameAndUnit) {
   EXPECT_EQ(parts("Y inch"), "Y|in");
   EXPECT_EQ(parts("X soll"), "X soll|");
   EXPECT_EQ(parts("T_column[degC]"), "T_column|degC");
+  // A factor beside the unit belongs to the unit, before it or behind it.
+  for (const char* text : {"dX Hundertstel [mm]", "dX 1/100 [mm]", "dX 0,01 [mm]", "dX [mm] in Hundertstel",
+                           "dX in 10^-2 mm", "dX 1 / 100 mm", "dX Skt 0,01 mm"})
+    EXPECT_EQ(parts(text), "dX|0.01mm") << text;
+  EXPECT_EQ(parts("dX Tausendstel [mm]"), "dX|um");
+  EXPECT_EQ(parts("dX Zehntel-µm"), "dX|0.1um");
+  EXPECT_EQ(parts("dX in 1/10 µm"), "dX|0.1um");
+  EXPECT_EQ(parts("dX Tausendstel Zoll"), "dX|thou");
+  EXPECT_EQ(parts("dX ten-thousandths of an inch"), "dX|0.0001in");
+  EXPECT_EQ(parts("dX tenths of a thou"), "dX|0.0001in");
+  EXPECT_EQ(parts("dC in 1/100 °"), "dC|0.01deg");
+  EXPECT_EQ(parts("dC Tausendstel Grad"), "dC|0.001deg");
+  // A factor that makes no known unit leaves the column without one.
+  for (const char* text :
+       {"dX 0,5 µm", "dX in 2 µm", "Abweichung X 2 µm", "Abweichung X 10 mm", "dX Skt 0,002 mm", "dX 0,02 mm",
+        "dX 1/20 mm", "dX [mm] x1000", "dX mm x 100", "dX in mm/100", "dX [10e-3 mm]", "dX Skt [mm]"}) {
+    EXPECT_EQ(parse_heading(text).unit, "") << text;
+    EXPECT_TRUE(has_factor(parse_heading(text).unknown_unit)) << text;
+  }
+  // Numbers of a heading that are no factor.
+  for (const char* text :
+       {"X 500 [mm]", "X500 [mm]", "Pos. 1 mm", "Y=400 mm", "Y=0,5 [mm]", "X [mm] (Messuhr 0,01 mm)"})
+    EXPECT_EQ(parse_heading(text).unit, "mm") << text;
+  for (const char* text : {"Lauf 1 [um]", "Lauf 1/10 [um]", "Messung 10 µm"})
+    EXPECT_EQ(parse_heading(text).unit, "um") << text;
+  EXPECT_EQ(parts("Temperatur 20 °C"), "Temperatur 20|degC");
   EXPECT_EQ(parse_heading("x [furlong]").unknown_unit, "furlong");
   EXPECT_EQ(name_from_words("Länge über alles (2)"), "Laenge_ueber_alles_2");
 }

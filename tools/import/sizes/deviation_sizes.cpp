@@ -13,33 +13,42 @@
 #include "tools/format/units.h"
 #include "tools/maths/median.h"
 #include "tools/sheet/sheet_number.h"
+#include "tools/sheet/unit_factor.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
 namespace {
 
-/// Half of the deviations are larger: no machine tool, and hardly a robot, is that wrong.
-constexpr double kSurely_mm = 5;
-/// The same as a share of the travel, if the deviations are larger than kVisible_mm. A scale error of a
-/// twentieth is no error of a machine (kSlope in column_values.cpp).
-constexpr double kImplausibleShare = 0.05, kVisible_mm = 0.5;
-/// A larger deviation is noted: errors of machine tools are below 0.5 mm, those of most robots below 2 mm.
-constexpr double kUnusual_mm = 2;
+/// Limits of the sizes of one quantity, in mm or in deg.
+struct Limits {
+  double surely;      // half of the deviations are larger: no machine tool, and hardly a robot, is that wrong
+  double visible;     // no share of the travel, and no single row, is judged below this size
+  double unusual;     // a larger deviation is noted
+  double resolution;  // no instrument of a workshop resolves less
+};
+/// Errors of machine tools are below 0.5 mm, those of most robots below 2 mm.
+constexpr Limits kLengths = {5, 0.5, 2, 1e-4};
+/// Rotary tables are right within 1 arcmin, worn ones within 0.1 deg; autocollimators resolve 0.01 arcsec.
+constexpr Limits kAngles = {1, 0.1, 0.2, 2.5e-6};
+/// Deviations that are a larger share of the travel: a scale error of a twentieth is no error of a machine
+/// (kSlope in column_values.cpp).
+constexpr double kImplausibleShare = 0.05;
 /// Ratio of two neighbours in the sorted sizes that only a factor of 1000 or a slipped decimal sign explains.
 constexpr double kGap = 100;
 /// Two columns of one machine whose deviations differ by this ratio do not have the same unit.
 constexpr double kApart = 300;
-/// No instrument of a workshop resolves less.
-constexpr double kResolution_mm = 1e-4;
-constexpr std::size_t kFewestSizes = 3;  // fewer rows show no usual size
+constexpr std::size_t kMostGroups = 200;  // more runs are labels of the rows
+constexpr std::size_t kFewestSizes = 3;   // fewer rows show no usual size
 
-/// A column of length deviations in mm, row after row.
+/// A column of deviations in mm or deg, row after row.
 struct Sizes {
   std::size_t column = 0;
-  std::vector<double> size_mm;    // absolute values
+  bool angle = false;             // true: the sizes are in deg
+  std::vector<double> size;       // absolute values
   std::vector<std::size_t> line;  // their lines in the file
-  double median_mm = 0, largest_mm = 0;
+  double median = 0, largest = 0;
+  const Limits& limits() const { return angle ? kAngles : kLengths; }
 };
 
 std::optional<double> number_at(const sheet::Sheet& sheet, std::size_t row, std::size_t column) {
@@ -47,29 +56,34 @@ std::optional<double> number_at(const sheet::Sheet& sheet, std::size_t row, std:
   return number ? text::parse_number(*number) : std::nullopt;
 }
 
-std::optional<format::Unit> length_unit(const SizedColumn& column) {
+/// The unit of a column of lengths or angles.
+std::optional<format::Unit> sized_unit(const SizedColumn& column) {
   const auto unit = format::find_unit(column.unit);
-  return !column.unit.empty() && unit && unit->dimension == format::Dimension::kLength ? unit : std::nullopt;
+  const bool sized =
+      unit && (unit->dimension == format::Dimension::kLength || unit->dimension == format::Dimension::kAngle);
+  return !column.unit.empty() && sized ? unit : std::nullopt;
 }
 
 std::optional<Sizes> sizes_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                               const std::vector<SizedColumn>& columns, std::size_t k) {
-  const auto unit = length_unit(columns[k]);
+  const auto unit = sized_unit(columns[k]);
   if (columns[k].use != SizedColumn::Use::kDeviation || !unit) return std::nullopt;
   Sizes sizes;
   sizes.column = k;
+  sizes.angle = unit->dimension == format::Dimension::kAngle;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
     if (const auto value = number_at(sheet, row, k)) {
-      sizes.size_mm.push_back(std::abs(*value) * unit->factor);
+      sizes.size.push_back(std::abs(*value) * unit->factor);
       sizes.line.push_back(sheet.line[row]);
     }
-  if (sizes.size_mm.size() < kFewestSizes) return std::nullopt;
-  sizes.median_mm = maths::median(sizes.size_mm);
-  sizes.largest_mm = *std::max_element(sizes.size_mm.begin(), sizes.size_mm.end());
+  if (sizes.size.size() < kFewestSizes) return std::nullopt;
+  sizes.median = maths::median(sizes.size);
+  sizes.largest = *std::max_element(sizes.size.begin(), sizes.size.end());
   return sizes;
 }
 
-std::string size_text(double mm) {
+std::string size_text(double mm, bool angle = false) {
+  if (angle) return mm < 0.01 ? fmt::format("{:.3g} arcsec", mm * 3600) : fmt::format("{:.3g} deg", mm);
   return mm < 1e-4   ? fmt::format("{:.3g} nm", mm * 1e6)
          : mm < 0.01 ? fmt::format("{:.3g} um", mm * 1e3)
                      : fmt::format("{:.3g} mm", mm);
@@ -82,6 +96,12 @@ std::string unit_remedy(const sheet::SheetTable& table, const SizedColumn& colum
                                 ? fmt::format("state another unit (--unit, or --deviation \"{}[um]={}\")",
                                               column.name, heading.text)
                                 : "correct the unit in the heading";
+  // The option would confirm a unit without its factor.
+  if (sheet::names_factor(heading.text))
+    return fmt::format(
+        "the heading has a factor that is not read as part of the unit [{}]: write the unit with "
+        "its factor in brackets, such as [0.01mm], or convert the values",
+        column.unit);
   return fmt::format("if the unit [{}] is wrong, {}; if it is right, give --deviation \"{}[{}]={}\"",
                      column.unit, wrong, column.name, column.unit, heading.text);
 }
@@ -90,7 +110,7 @@ std::string unit_remedy(const sheet::SheetTable& table, const SizedColumn& colum
 std::optional<std::size_t> positions_of(const std::vector<SizedColumn>& columns, const SizedColumn& one) {
   for (std::size_t k = 0; k < columns.size(); ++k)
     if (columns[k].use == SizedColumn::Use::kPosition && columns[k].name == one.positions &&
-        length_unit(columns[k]))
+        sized_unit(columns[k]) && sized_unit(columns[k])->dimension == sized_unit(one)->dimension)
       return k;
   return std::nullopt;
 }
@@ -100,7 +120,7 @@ double travel_along(const sheet::Sheet& sheet, const sheet::SheetTable& table,
   std::vector<double> at;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
     if (const auto value = number_at(sheet, row, position))
-      at.push_back(*value * length_unit(columns[position])->factor);
+      at.push_back(*value * sized_unit(columns[position])->factor);
   if (at.empty()) return 0;
   const auto [least, most] = std::minmax_element(at.begin(), at.end());
   return *most - *least;
@@ -114,78 +134,92 @@ struct SizeVerdict {
 };
 
 SizeVerdict beside_other_rows(const Sizes& sizes) {
-  std::vector<double> sorted = sizes.size_mm;
+  std::vector<double> sorted = sizes.size;
   std::erase_if(sorted, [](double one) { return one == 0; });
   std::sort(sorted.begin(), sorted.end());
   for (std::size_t i = 1; i < sorted.size(); ++i) {
     // A few small values among large ones are near a zero of the error.
     const bool usual = i >= 2 && 4 * i >= sorted.size();
-    if (!usual || sorted[i] < kVisible_mm || sorted[i] < kGap * sorted[i - 1]) continue;
-    const auto at = std::find_if(sizes.size_mm.begin(), sizes.size_mm.end(),
-                                 [&](double one) { return one >= sorted[i]; });
-    const std::size_t row = static_cast<std::size_t>(at - sizes.size_mm.begin()), many = sorted.size() - i;
+    if (!usual || sorted[i] < sizes.limits().visible || sorted[i] < kGap * sorted[i - 1]) continue;
+    const auto at =
+        std::find_if(sizes.size.begin(), sizes.size.end(), [&](double one) { return one >= sorted[i]; });
+    const std::size_t row = static_cast<std::size_t>(at - sizes.size.begin()), many = sorted.size() - i;
     return {true, sizes.line[row],
             fmt::format("the deviation {} in this row{} is more than {} times as large as the other ones (at "
                         "most {}): correct the cell or its unit",
-                        size_text(*at),
+                        size_text(*at, sizes.angle),
                         many > 1 ? fmt::format(" (and in {} more)", std::to_string(many - 1)) : "", kGap,
-                        size_text(sorted[i - 1]))};
+                        size_text(sorted[i - 1], sizes.angle))};
   }
   return {};
 }
 
-SizeVerdict beside_travel(const Sizes& sizes, double travel_mm, const std::string& axis) {
+SizeVerdict beside_travel(const Sizes& sizes, double travel, const std::string& axis) {
   const std::string along =
-      travel_mm > 0 ? fmt::format(", and {} moves by {}", axis, size_text(travel_mm)) : "";
+      travel > 0 ? fmt::format(", and {} moves by {}", axis, size_text(travel, sizes.angle)) : "";
   const bool share =
-      travel_mm > 0 && sizes.median_mm > kImplausibleShare * travel_mm && sizes.median_mm > kVisible_mm;
-  if (sizes.median_mm > kSurely_mm || share)
+      travel > 0 && sizes.median > kImplausibleShare * travel && sizes.median > sizes.limits().visible;
+  if (sizes.median > sizes.limits().surely || share)
     return {true, 0,
             fmt::format("half of the deviations are larger than {}{}: no machine has such errors",
-                        size_text(sizes.median_mm), along)};
-  if (sizes.largest_mm > kUnusual_mm)
+                        size_text(sizes.median, sizes.angle), along)};
+  if (sizes.largest > sizes.limits().unusual)
     return {false, 0,
             fmt::format("the deviations are as large as {}{}: unusual for a machine",
-                        size_text(sizes.largest_mm), along)};
-  if (sizes.largest_mm > 0 && sizes.largest_mm < kResolution_mm)
+                        size_text(sizes.largest, sizes.angle), along)};
+  if (sizes.largest > 0 && sizes.largest < sizes.limits().resolution)
     return {false, 0,
             fmt::format("all deviations are below {}, less than an instrument resolves",
-                        size_text(kResolution_mm))};
+                        size_text(sizes.limits().resolution, sizes.angle))};
   return {};
 }
 
-/// Runs of one column, one of which has another unit: run 1 in um and run 2 in mm.
-SizeVerdict beside_other_runs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
-                              const std::vector<SizedColumn>& columns, const Sizes& sizes) {
-  const auto run = std::find_if(columns.begin(), columns.end(), [](const SizedColumn& one) {
-    return one.use != SizedColumn::Use::kDeviation && one.name == format::columns::kRun;
-  });
-  if (run == columns.end()) return {};
-  const std::size_t of_run = static_cast<std::size_t>(run - columns.begin());
-  std::map<std::string, Sizes> runs;
+/// Groups of rows of one column, one of which has another unit: run 1 in um and run 2 in mm, or one approach
+/// direction in another unit than the other.
+SizeVerdict beside_other_groups(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                const std::vector<SizedColumn>& columns, const Sizes& sizes,
+                                std::size_t of_group, const char* what) {
+  std::map<std::string, Sizes> groups;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    if (!number_at(sheet, row, sizes.column)) continue;
-    Sizes& one = runs[sheet.rows[row][of_run]];
-    one.size_mm.push_back(std::abs(*number_at(sheet, row, sizes.column)) *
-                          length_unit(columns[sizes.column])->factor);
+    const auto value = number_at(sheet, row, sizes.column);
+    // Rows that are exactly 0 show no size.
+    if (!value || *value == 0) continue;
+    Sizes& one = groups[sheet.rows[row][of_group]];
+    one.size.push_back(std::abs(*value) * sized_unit(columns[sizes.column])->factor);
     one.line.push_back(sheet.line[row]);
   }
-  for (auto& [name, one] : runs) one.median_mm = maths::median(one.size_mm);
-  for (const auto& [name, one] : runs)
-    for (const auto& [larger, other] : runs) {
-      const bool enough = one.size_mm.size() >= kFewestSizes && other.size_mm.size() >= kFewestSizes;
-      if (!enough || one.median_mm <= 0 || other.median_mm < kApart * one.median_mm) continue;
-      return {true, one.line.front(),
-              fmt::format("the deviations of run {} are about {}, those of run {} about {}: the two runs do "
-                          "not have the same unit",
-                          name, size_text(one.median_mm), larger, size_text(other.median_mm))};
+  if (groups.size() > kMostGroups) return {};
+  for (auto& [name, one] : groups) one.median = maths::median(one.size);
+  for (const auto& [name, one] : groups)
+    for (const auto& [larger, other] : groups) {
+      const bool enough = one.size.size() >= kFewestSizes && other.size.size() >= kFewestSizes;
+      if (!enough || one.median <= 0 || other.median < kApart * one.median) continue;
+      return {
+          true, one.line.front(),
+          fmt::format("the deviations of {0} {1} are about {2}, those of {0} {3} about {4}: the two {0}s do "
+                      "not have the same unit",
+                      what, name, size_text(one.median, sizes.angle), larger,
+                      size_text(other.median, sizes.angle))};
     }
+  return {};
+}
+
+SizeVerdict beside_other_runs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                              const std::vector<SizedColumn>& columns, const Sizes& sizes) {
+  const std::string sense = format::entry_of(format::AxisQuantity::kSense).prefix;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k].use == SizedColumn::Use::kDeviation) continue;
+    const bool run = columns[k].name == format::columns::kRun;
+    if (!run && columns[k].name != sense + columns[sizes.column].name) continue;
+    SizeVerdict verdict = beside_other_groups(sheet, table, columns, sizes, k, run ? "run" : "direction");
+    if (!verdict.words.empty()) return verdict;
+  }
   return {};
 }
 
 /// Positions in a smaller unit than their deviations: the units of the two headings are exchanged.
 bool exchanged(const std::vector<SizedColumn>& columns, std::size_t deviation, std::size_t position) {
-  return length_unit(columns[position])->factor < length_unit(columns[deviation])->factor;
+  return sized_unit(columns[position])->factor < sized_unit(columns[deviation])->factor;
 }
 
 }  // namespace
@@ -214,32 +248,34 @@ std::vector<SizeDoubt> judge_deviation_sizes(sheet::Sheet& sheet, const sheet::S
   for (const Sizes& sizes : all) {
     const std::size_t k = sizes.column;
     const auto position = positions_of(columns, columns[k]);
-    const double travel_mm = position ? travel_along(sheet, table, columns, *position) : 0;
+    const double travel = position ? travel_along(sheet, table, columns, *position) : 0;
     SizeVerdict verdict = beside_other_runs(sheet, table, columns, sizes);
     if (verdict.words.empty()) verdict = beside_other_rows(sizes);
-    if (verdict.words.empty()) verdict = beside_travel(sizes, travel_mm, columns[k].name);
+    if (verdict.words.empty()) verdict = beside_travel(sizes, travel, columns[k].name);
     if (position && exchanged(columns, k, *position)) {
-      verdict.refuse = sizes.median_mm > kImplausibleShare * travel_mm;
+      verdict.refuse = sizes.median > kImplausibleShare * travel;
       verdict.line = 0;
       verdict.words = fmt::format(
           "the positions \"{}\" are in the smaller unit [{}] and their deviations in [{}]{}: the units of "
           "the two headings are probably exchanged",
           table.headings[*position].text, columns[*position].unit, columns[k].unit,
-          travel_mm > 0 ? fmt::format(", so {} would move by {} only", columns[k].name, size_text(travel_mm))
-                        : "");
+          travel > 0
+              ? fmt::format(", so {} would move by {} only", columns[k].name, size_text(travel, sizes.angle))
+              : "");
     }
     say(k, verdict);
   }
   for (const Sizes& one : all)
     for (const Sizes& other : all) {
-      if (one.median_mm <= 0 || other.median_mm < kApart * one.median_mm || one.largest_mm > kResolution_mm)
+      if (one.angle != other.angle || one.median <= 0 || other.median < kApart * one.median ||
+          one.largest > one.limits().resolution)
         continue;
       say(one.column,
           {true, 0,
            fmt::format("the deviations are about {}, those of \"{}\" about {}: the two columns cannot both "
                        "have the right unit",
-                       size_text(one.median_mm), table.headings[other.column].text,
-                       size_text(other.median_mm))});
+                       size_text(one.median, one.angle), table.headings[other.column].text,
+                       size_text(other.median, other.angle))});
     }
   return doubts;
 }

@@ -153,6 +153,81 @@ void judge_signs(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vecto
       order, heading, columns[k].name, heading);
 }
 
+/// Rows one after the other with one code whose positions go in one direction: a block ends where the code or
+/// the motion reverses. Counts of the blocks that agree with their code, and that contradict it.
+struct Blocks {
+  std::size_t agreeing = 0, against_up = 0, against_down = 0;
+  std::size_t line = 0;  // of the first row of the first block that contradicts
+  /// Some runs have their directions exchanged. In a table that is sorted by the position, only the blocks
+  /// of one direction contradict.
+  bool mixed() const { return agreeing > 0 && against_up > 0 && against_down > 0; }
+};
+
+int sense_of_code(const std::string& code) { return code == "1" ? 1 : code == "-1" ? -1 : sense_said(code); }
+
+Blocks blocks_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t position,
+                 std::size_t k) {
+  constexpr std::size_t kFewest = 2;  // steps; one step may be the way back to the next line of points
+  Blocks blocks;
+  std::size_t begin = 0, steps = 0;
+  std::size_t still = 0;  // the last row without a motion since the row before it
+  int motion = 0, sense = 0;
+  std::optional<double> before;
+  const auto close = [&] {
+    if (steps < kFewest || sense == 0) return;
+    blocks.agreeing += motion == sense ? 1 : 0;
+    if (motion == sense) return;
+    ++(sense > 0 ? blocks.against_up : blocks.against_down);
+    if (blocks.line == 0) blocks.line = sheet.line[begin];
+  };
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto here = value_at(sheet, row, position);
+    if (sheet::is_blank(sheet.rows[row]) || !here) continue;
+    const int said = sense_of_code(code_of(sheet.rows[row][k]));
+    const int moved = !before ? 0 : *here > *before ? 1 : *here < *before ? -1 : 0;
+    const std::size_t first = said == sense && still + 1 == row ? still : row;  // of a block that begins here
+    if (moved == 0) still = row;
+    before = here;
+    if (said == sense && (moved == 0 || motion == 0 || moved == motion)) {
+      steps += moved != 0 ? 1 : 0;
+      motion = moved != 0 ? moved : motion;
+      continue;
+    }
+    close();
+    begin = first;
+    motion = said == sense ? moved : 0;
+    steps = motion != 0 ? 1 : 0;
+    sense = said;
+  }
+  close();
+  return blocks;
+}
+
+/// Directions that contradict the order of the rows in some runs only: a doubt, unless the user assigned the
+/// column.
+void judge_runs(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
+                std::size_t position, std::size_t k) {
+  const Blocks blocks = blocks_of(sheet, table, position, k);
+  if (!blocks.mixed() || !columns[k].doubt.empty()) return;
+  const std::string& heading = table.headings[k].text;
+  const std::string order = fmt::format(
+      "the directions contradict the order of the rows in {} of {} runs, first in line {}: the positions of "
+      "{} "
+      "go the other way there",
+      blocks.against_up + blocks.against_down, blocks.agreeing + blocks.against_up + blocks.against_down,
+      std::to_string(blocks.line), columns[position].name);
+  if (columns[k].why != "by its heading" || heading == columns[k].name) {
+    sheet.notes.push_back(fmt::format("\"{}\": {}; the directions are used as written", heading, order));
+    return;
+  }
+  columns[k].doubt_place = {sheet.file, blocks.line};
+  columns[k].doubt_word = heading;
+  columns[k].doubt = fmt::format(
+      "{}; exchange the two directions in these runs, or leave the column out (--leave \"{}\"); if the "
+      "directions are right and the rows are sorted, give --column \"{}={}\"",
+      order, heading, columns[k].name, heading);
+}
+
 void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
                    std::size_t k, bool unfolded) {
   const std::string axis =
@@ -166,8 +241,9 @@ void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vec
   // A column with the name of the measurement file keeps its numbers.
   std::optional<Codes> codes = table.headings[k].text == columns[k].name ? std::nullopt : meaning_of(found);
   if (!codes) {
-    if (position != columns.end() && !unfolded)
-      judge_signs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
+    if (position == columns.end() || unfolded) return;
+    judge_signs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
+    judge_runs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
     return;
   }
   const std::string& heading = table.headings[k].text;
@@ -193,6 +269,8 @@ void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vec
         "this column",
         heading, codes->up, axis, codes->down));
   write_directions(sheet, table, k, *codes);
+  if (position != columns.end())
+    judge_runs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
 }
 
 /// "1+", "2 hin" or "Lauf 1 +": the run and the direction; nullopt for other texts.

@@ -466,8 +466,11 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
   if (!wishes.one_motion) refuse_tables_side_by_side(sheet, table, columns);
   settle_signs(sheet, table, columns, wishes);
   keep_names_apart(table, columns);
-  for (SheetColumn& column : columns) {
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    SheetColumn& column = columns[k];
     if (!column.unit.empty() || wishes.unit.empty() || !wants_unit(column)) continue;
+    // A heading with an unknown unit, such as "0,5 um", is not one without a unit.
+    if (!table.headings[k].unknown_unit.empty()) continue;
     // A unit for all headings without one is for lengths or angles, not for temperatures and loads.
     const std::string& name = column.name;
     const bool length = guess.is_axis(name) || column.use == SheetColumn::Use::kDeviation ||

@@ -15,6 +15,7 @@
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"
+#include "tools/sheet/unit_factor.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
@@ -289,10 +290,13 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
     if (const std::string& unknown = table.headings[k].unknown_unit; !unknown.empty())
       throw text::InputError(
           heading, table.headings[k].text,
-          fmt::format("[{}] is no known unit; known are {}; state the unit, for example "
-                      "--{} \"{}[{}]={}\", or convert the values to one of these units",
-                      unknown, format::known_units(), deviation ? "deviation" : "column", column.name,
-                      deviation ? "0.01mm" : unit_to_say(column.name, columns), table.headings[k].text));
+          fmt::format("{}; convert the values to a known unit, or, if they already are in one, state it in "
+                      "place of UNIT: --{} \"{}[UNIT]={}\"; known are {}",
+                      sheet::has_factor(unknown)
+                          ? fmt::format("the unit [{}] has a factor that is not known", unknown)
+                          : fmt::format("[{}] is no known unit", unknown),
+                      deviation ? "deviation" : "column", column.name, table.headings[k].text,
+                      format::known_units()));
     const double largest = largest_value(sheet, table, k);
     const std::string unit =
         deviation ? unit_of_deviation(columns, column.name, largest) : unit_to_say(column.name, columns);

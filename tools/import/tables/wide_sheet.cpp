@@ -17,6 +17,7 @@
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
 #include "tools/sheet/sheet_number.h"
+#include "tools/sheet/unit_factor.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -31,6 +32,7 @@ struct RunColumn {
   int sense = 0;
   bool deviation = false, measured = false, turned = false, pos = false;
   bool length = false;    // the sign by the length of the motion: "positiv = zu kurz"
+  bool forth = false;     // the direction by a word of the survey: "hin", "zurück", "forward"
   bool relative = false;  // the direction by a word that is not about the axis: "hin", "forward", "up"
 };
 
@@ -149,6 +151,7 @@ std::optional<RunColumn> run_column(const sheet::Heading& heading) {
       if (by_word != 0) return std::nullopt;
       by_word = sense_said(small);
       column.relative |= says_relative(small) || says_height(small);
+      column.forth |= says_relative(small);
       column.pos |= small == "pos";
     } else if (says_deviation(small)) {
       column.deviation = said = true;
@@ -196,16 +199,31 @@ double spread_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
   return most - least;
 }
 
-/// The unit of lengths or angles in a title: "Abweichungen in µm (Soll-Ist)".
-std::string unit_in(const std::string& title) {
-  for (const std::string& word : text::words_in(title, " \t,;:")) {
+/// The unit of lengths or angles in a title, in a heading without name: "Abweichungen in µm (Soll-Ist)",
+/// "Abweichung in 1/1000 mm".
+sheet::Heading unit_in(const std::string& title) {
+  // A comma in a number is no comma of the sentence.
+  const std::vector<std::string> parts = text::words_in(title, " \t;:");
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const std::string word = parts[k].ends_with(',') ? parts[k].substr(0, parts[k].size() - 1) : parts[k];
     const auto unit = sheet::unit_meant(word);
     // "in" and "as" are words of a sentence.
     if (!unit || word == "in" || word == "as" || word.size() < 2) continue;
     const auto dimension = format::find_unit(*unit)->dimension;
-    if (dimension == format::Dimension::kLength || dimension == format::Dimension::kAngle) return *unit;
+    if (dimension != format::Dimension::kLength && dimension != format::Dimension::kAngle) continue;
+    // "Zehntel" before "µm" is no tenth of a millimetre, and the unit follows.
+    std::size_t next = k + 1;
+    while (next < parts.size() && (parts[next] == "of" || parts[next] == "a" || parts[next] == "an")) ++next;
+    if (sheet::factor_at_end(word) && next < parts.size() && sheet::unit_meant(parts[next]) &&
+        parts[next] != "in")
+      continue;
+    std::string phrase;
+    for (std::size_t i = 0; i <= k; ++i) phrase += (i == 0 ? "" : " ") + (i == k ? word : parts[i]);
+    sheet::Heading heading = sheet::parse_heading(phrase);
+    if (heading.unit.empty() && heading.unknown_unit.empty()) heading.unit = *unit;
+    return heading;
   }
-  return sheet::parse_heading(title).unit;
+  return sheet::parse_heading(title);
 }
 
 /// Kind of the readings, as a heading of one column that the import understands.
@@ -213,7 +231,9 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
                                    const std::vector<RunColumn>& runs,
                                    const std::vector<std::size_t>& others) {
   RunColumn all = runs.front();
+  std::string unknown;  // a unit that the formats do not have
   for (const RunColumn& one : runs) {
+    if (unknown.empty()) unknown = table.headings[one.column].unknown_unit;
     all.deviation |= one.deviation;
     all.measured |= one.measured;
     all.turned |= one.turned;
@@ -227,7 +247,10 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
     });
     if (!deviation) continue;
     all.deviation = all.deviation || !all.measured;
-    if (all.unit.empty()) all.unit = unit_in(title);
+    if (!all.unit.empty() || !unknown.empty()) continue;
+    const sheet::Heading stated = unit_in(title);
+    all.unit = stated.unit;
+    unknown = stated.unknown_unit;
   }
   if (!all.deviation && !all.measured) {
     // Readings that go as far as the positions do are positions.
@@ -236,7 +259,7 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
       const double ratio = spread_of(sheet, table, other) > 0 ? read / spread_of(sheet, table, other) : 0;
       if (!(ratio > 0.9 && ratio < 1.1)) continue;
       all.measured = true;
-      if (all.unit.empty()) all.unit = table.headings[other].unit;
+      if (all.unit.empty() && unknown.empty()) all.unit = table.headings[other].unit;
     }
   }
   sheet::Heading heading;
@@ -245,37 +268,47 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
   heading.text = heading.name + (all.length   ? all.turned ? " (positive = short)" : " (positive = long)"
                                  : all.turned ? " (nominal-actual)"
                                               : "");
-  heading.unit = all.unit;
+  heading.unit = unknown.empty() ? all.unit : "";
+  heading.unknown_unit = unknown;
   return heading;
 }
 
-/// Notes "hin" in a table whose positions decrease from row to row: the first approach may have run that way.
-void note_decreasing_positions(sheet::Sheet& sheet, const sheet::SheetTable& table,
-                               const std::vector<RunColumn>& runs, std::size_t position) {
+/// True if the positions decrease from row to row.
+bool positions_decrease(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t position) {
   constexpr std::size_t kEnough = 3;  // fewer rows show no order
-  if (std::none_of(runs.begin(), runs.end(), [](const RunColumn& one) { return one.relative; })) return;
   std::optional<double> before;
   std::size_t rows = 0;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const auto number = sheet::plain_number(sheet.rows[row][position], sheet.decimal_comma);
     const auto value = number ? text::parse_number(*number) : std::nullopt;
     if (!value) continue;
-    if (before && *value >= *before) return;
+    if (before && *value >= *before) return false;
     before = value;
     ++rows;
   }
-  if (rows < kEnough) return;
+  return rows >= kEnough;
+}
+
+/// A table whose positions decrease from row to row. "hin" is the way that the rows go, as in a table with
+/// one row for each reading: the two directions are exchanged, with a note. Up and down, and directions with
+/// positions of their own, only get the note.
+void settle_decreasing_positions(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                 std::vector<RunColumn>& runs, std::size_t position, bool own_positions) {
   const auto forth =
       std::find_if(runs.begin(), runs.end(), [](const RunColumn& one) { return one.sense > 0; });
-  if (forth == runs.end()) return;
-  const std::string& heading = table.headings[forth->column].text;
-  sheet.notes.push_back(
-      fmt::format("\"{}\" is read as the approach in the direction of increasing positions, and the "
-                  "positions of the table "
-                  "decrease from row to row; if this approach ran toward smaller positions, write - in its "
-                  "heading and + in "
-                  "the heading of the other approach",
-                  heading));
+  if (std::none_of(runs.begin(), runs.end(), [](const RunColumn& one) { return one.relative; })) return;
+  if (forth == runs.end() || !positions_decrease(sheet, table, position)) return;
+  const std::string heading = table.headings[forth->column].text;
+  const bool words = std::all_of(runs.begin(), runs.end(), [](const RunColumn& one) { return one.forth; });
+  if (words && !own_positions)
+    for (RunColumn& one : runs) one.sense = -one.sense;
+  sheet.notes.push_back(fmt::format(
+      "\"{}\" is read as the approach in the direction of {} positions, and the positions of the table "
+      "decrease from row to row; if this approach ran toward {} positions, write {} in its heading and {} in "
+      "the heading of the other approach",
+      heading, words && !own_positions ? "decreasing" : "increasing",
+      words && !own_positions ? "larger" : "smaller", words && !own_positions ? "+" : "-",
+      words && !own_positions ? "-" : "+"));
 }
 
 bool belong_together(const std::vector<RunColumn>& runs) {
@@ -357,7 +390,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   if (others.empty() || !belong_together(runs)) return 0;
   const std::map<int, std::size_t> positions = positions_by_direction(sheet, table, others);
   number_runs(sheet, table, runs);
-  note_decreasing_positions(sheet, table, runs, others.front());
+  settle_decreasing_positions(sheet, table, runs, others.front(), !positions.empty());
   constexpr std::size_t kMostCells = 8u << 20;  // 64 MB of numbers
   const std::size_t width = others.size() + 3, data = sheet.rows.size() - table.first_data;
   if (data > kMostCells / width / runs.size())
