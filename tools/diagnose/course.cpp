@@ -16,12 +16,6 @@ namespace {
 using Index = Eigen::Index;
 using model::SymbolKind;
 
-bool is_of_time(const std::pair<int, std::size_t>& driver) {
-  const auto kind = static_cast<SymbolKind>(driver.first);
-  return driver.first < 0 || kind == SymbolKind::kInput || kind == SymbolKind::kTime ||
-         kind == SymbolKind::kVisit;
-}
-
 /// Returns the states of the rows with constant quantities, so that a term depends on the positions only.
 model::States held_states(const Evidence& evidence, const effects::Candidate& candidate) {
   model::States states = evidence.measurement().states;
@@ -60,8 +54,8 @@ model::States held_states(const Evidence& evidence, const effects::Candidate& ca
   return states;
 }
 
-/// Returns the first columns of a candidate that do not vanish while its quantity is constant, before
-/// whitening.
+/// Returns the columns of a candidate while its quantity is constant, before whitening: its dependence on the
+/// positions.
 Eigen::MatrixXd held_columns(const Evidence& evidence, const Pool& pool, std::size_t item) {
   const effects::Candidate& candidate = pool.candidate(item);
   ColumnMaker maker(evidence);
@@ -71,17 +65,11 @@ Eigen::MatrixXd held_columns(const Evidence& evidence, const Pool& pool, std::si
 /// Half-waves over the order of the rows, then over the time if it was recorded: a quantity follows the time,
 /// or begins anew with each run.
 Eigen::MatrixXd courses(const Evidence& evidence, int count) {
-  const auto fitted = [&](const model::Column& all) {
-    Eigen::ArrayXd values(static_cast<Index>(evidence.rows().size()));
-    for (Index i = 0; i < values.size(); ++i)
-      values[i] = all[static_cast<Index>(evidence.rows()[static_cast<std::size_t>(i)])];
-    return values;
-  };
   const model::States& states = evidence.measurement().states;
   const auto last = static_cast<Index>(states.count);
   std::vector<Eigen::ArrayXd> over = {
-      fitted(model::Column::LinSpaced(last, 0, static_cast<double>(last - 1)))};
-  if (const Eigen::ArrayXd time = fitted(states.time); time.maxCoeff() > time.minCoeff())
+      evidence.at_readings(model::Column::LinSpaced(last, 0, static_cast<double>(last - 1)))};
+  if (const Eigen::ArrayXd time = evidence.at_readings(states.time); time.maxCoeff() > time.minCoeff())
     over.push_back(time);
   Eigen::MatrixXd waves(over.front().size(), count * static_cast<int>(over.size()));
   Index at = 0;
@@ -161,7 +149,7 @@ std::string doubt_of_course(const Evidence& evidence, const Pool& pool, const st
     return beside.share > limits.course_share && beside.log_p < chance ? beside.share : 0.0;
   };
   // An effect that follows nothing in time must keep its size; every effect is asked, so the level is strict.
-  const bool of_time = std::any_of(drivers.begin(), drivers.end(), is_of_time);
+  const bool of_time = change_in_time(drivers);
   if (const double share = doubted(courses(evidence, static_cast<int>(limits.most_half_waves)),
                                    of_time ? limits.course_chance : limits.change_chance);
       share > 0)

@@ -14,11 +14,8 @@ constexpr double kDay = 86400;  // s
 /// Returns columns for each kind of reading: sine and cosine of the time of day.
 std::vector<Eigen::MatrixXd> daily_shifts(const Evidence& evidence) {
   const Eigen::MatrixXd offsets = evidence.offset_columns();
-  Eigen::ArrayXd turn(offsets.rows());
-  for (Eigen::Index i = 0; i < turn.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(evidence.rows()[static_cast<std::size_t>(i)]);
-    turn[i] = 2 * std::numbers::pi * evidence.measurement().states.time[row] / kDay;
-  }
+  const Eigen::ArrayXd turn =
+      2 * std::numbers::pi * evidence.at_readings(evidence.measurement().states.time) / kDay;
   std::vector<Eigen::MatrixXd> all;
   for (Eigen::Index kind = 0; kind < offsets.cols(); ++kind) {
     Eigen::MatrixXd columns(offsets.rows(), 2);

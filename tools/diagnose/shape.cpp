@@ -20,12 +20,7 @@ using Index = Eigen::Index;
 Eigen::VectorXd positions(const Evidence& evidence, std::size_t axis) {
   const Evidence::Range range = evidence.range_of(axis);
   const double span = std::max(range.high - range.low, 1e-300);
-  Eigen::VectorXd u(static_cast<Index>(evidence.rows().size()));
-  for (Index i = 0; i < u.size(); ++i) {
-    const auto row = static_cast<Index>(evidence.rows()[static_cast<std::size_t>(i)]);
-    u[i] = (evidence.position(axis)[row] - range.low) / span;
-  }
-  return u;
+  return (evidence.at_readings(evidence.position(axis)) - range.low) / span;
 }
 
 /// Returns the number of measured positions. Positions closer than `apart` (of the range) count

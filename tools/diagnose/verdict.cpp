@@ -394,14 +394,8 @@ class Decision {
   /// Can a term repeat a part of a drift? True if the term depends on an input, the time or the run, at any
   /// position, or if only a search of products found it.
   bool can_follow_a_drift(std::size_t item) const {
-    const effects::Candidate& candidate = pool_.candidate(item);
-    if (pool_.is_custom(item) || !candidate.choice.runs.empty()) return true;
-    const auto drivers = drivers_of(finder_.evidence().machine(), candidate);
-    return std::any_of(drivers.begin(), drivers.end(), [](const auto& driver) {
-      const auto kind = static_cast<model::SymbolKind>(driver.first);
-      return kind == model::SymbolKind::kInput || kind == model::SymbolKind::kTime ||
-             kind == model::SymbolKind::kVisit;
-    });
+    return pool_.is_custom(item) ||
+           change_in_time(drivers_of(finder_.evidence().machine(), pool_.candidate(item)));
   }
 
   /// Returns the mean square of the weighted residual of the fit readings, correlated errors included, except

@@ -273,14 +273,13 @@ class AddReader {
 
   static bool acts_at_one(const EffectForm& form) {
     return form.place != PlaceRule::kEachAxis && form.place != PlaceRule::kPair &&
-           form.place != PlaceRule::kNormal && form.place != PlaceRule::kPoint &&
-           form.place != PlaceRule::kSeveral;
+           form.place != PlaceRule::kNormal && !form.acts_at_transform();
   }
 
   void fill_place() {
     const bool needs_axis = choice_.form->asks_for("q") || choice_.form->asks_for("hats");
     if (needs_axis && !choice_.axis) choice_.axis = default_axis_;
-    if (choice_.form->place == PlaceRule::kSeveral || choice_.form->place == PlaceRule::kPoint) {
+    if (choice_.form->acts_at_transform()) {
       if (dof_)
         fail(*dof_, choice_.form->place == PlaceRule::kPoint
                         ? "this form acts at the three lengths of the transform; do not give dof"
@@ -382,8 +381,7 @@ std::string add_string(const model::Machine& machine, const Choice& c) {
   if (c.place) {
     put("branch", c.place->workpiece ? "workpiece" : "tool");
     put("transform", std::to_string(transform_at(machine, *c.place).n));
-    const bool several = c.effect->has_found_terms() || c.form->place == PlaceRule::kPoint;
-    if (!several) put("dof", dof_name(machine, *c.place));
+    if (!c.form->acts_at_transform()) put("dof", dof_name(machine, *c.place));
   }
   if (c.reference) put("reference", text::number_text(*c.reference));
   for (std::size_t i = 0; i < c.units.size(); ++i)

@@ -78,6 +78,8 @@ struct EffectForm {
   std::size_t hats = 0;               // N of {hats N}
 
   bool asks_for(const std::string& mark) const { return marks.contains(mark); }
+  /// True if the form acts at degrees of freedom of one transform together; a choice then has no dof.
+  bool acts_at_transform() const { return place == PlaceRule::kSeveral || place == PlaceRule::kPoint; }
   bool asks_for_input() const { return asks_for("T") || asks_for("L") || asks_for("F") || asks_for("V"); }
   /// Returns true if the condition `is` is true for any node of the term.
   template <class Is>

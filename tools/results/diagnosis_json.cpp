@@ -66,8 +66,7 @@ Json candidate_json(const diagnose::CandidateFinding& finding, const model::Mach
   json["parameters"] = Json::array();
   for (const fit::ParameterEstimate& item : finding.parameters) {
     json["parameters"].push_back(parameter_json(item));
-    if (std::string note = reversal_note({term_text(finding.candidate)}, item.name, item.value, item.unit);
-        !note.empty())
+    if (std::string note = reversal_note(finding.candidate, item); !note.empty())
       json["parameters"].back()["note"] = std::move(note);
   }
   json["rms_after_um"] = text::or_null(finding.rms_after_um);
@@ -173,6 +172,12 @@ text::Assurance assurance_of(const diagnose::Diagnosis& diagnosis, const model::
 }
 
 }  // namespace
+
+std::string reversal_note(const effects::Candidate& candidate, const fit::ParameterEstimate& parameter) {
+  std::vector<std::string> terms;
+  for (const effects::CandidateTerm& term : candidate.terms) terms.push_back(term.text);
+  return reversal_note(terms, parameter.name, parameter.value, parameter.unit);
+}
 
 Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measurement& measurement) {
   Json json;

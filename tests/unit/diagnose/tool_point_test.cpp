@@ -55,6 +55,13 @@ std::string readings_of(const std::string& robot) {
   return text;
 }
 
+/// The diagnosis of an arm with the target at (30, -12), by the readings of another one.
+Diagnosis diagnosed_by(const std::string& real) {
+  const std::string given = arm(30, -12, 0);
+  const Machine machine = parse_machine(given, "m.xml");
+  return diagnose::diagnose(given, machine, parse_measurement(readings_of(real), "m.csv", machine));
+}
+
 double value_of(const Machine& machine, const std::string& name) {
   const auto found = machine.find_static(name);
   return found ? machine.statics[*found].value : std::nan("");
@@ -62,11 +69,7 @@ double value_of(const Machine& machine, const std::string& name) {
 
 // Named before: one length of the point, and 2.4 deg of the last joint took the rest.
 TEST(ToolPoint, IsNamedAsAWholeAndTheLastJointKeepsItsZero) {
-  const std::string given = arm(30, -12, 0);
-  const Machine machine = parse_machine(given, "m.xml");
-  const Measurement rows = parse_measurement(readings_of(arm(30.6, -12.7, 0)), "m.csv", machine);
-
-  const Diagnosis answer = diagnose::diagnose(given, machine, rows);
+  const Diagnosis answer = diagnosed_by(arm(30.6, -12.7, 0));
 
   ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
   EXPECT_EQ(answer.ladder.at(1).add, "offset:branch=tool,transform=4,form=point");
@@ -77,11 +80,7 @@ TEST(ToolPoint, IsNamedAsAWholeAndTheLastJointKeepsItsZero) {
 
 /// A wrong zero alone explains the readings, and the tool is not asked.
 TEST(ToolPoint, IsNotBlamedForTheZeroOfTheLastJoint) {
-  const std::string given = arm(30, -12, 0);
-  const Machine machine = parse_machine(given, "m.xml");
-  const Measurement rows = parse_measurement(readings_of(arm(30, -12, 0.4)), "m.csv", machine);
-
-  const Diagnosis answer = diagnose::diagnose(given, machine, rows);
+  const Diagnosis answer = diagnosed_by(arm(30, -12, 0.4));
 
   EXPECT_EQ(answer.verdict, Verdict::kConsistent) << "seed " << kSeed << ": " << answer.explanation;
   EXPECT_NEAR(value_of(answer.end.machine, "th3"), 0.4, 0.05);

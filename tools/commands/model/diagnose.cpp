@@ -65,9 +65,7 @@ void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
     if (!c.accepted) continue;
     fmt::print(out, "    {}; in the chain: {}\n", diagnose::said_of(c), c.candidate.label);
     for (const fit::ParameterEstimate& p : c.parameters) {
-      std::string note;
-      for (const effects::CandidateTerm& term : c.candidate.terms)
-        if (note.empty()) note = results::reversal_note({term.text}, p.name, p.value, p.unit);
+      const std::string note = results::reversal_note(c.candidate, p);
       fmt::print(out, "    {} = {:.6g} +- {} {}{}\n", p.name, p.value, fmt::format("{:.2g}", p.std), p.unit,
                  note.empty() ? "" : " (" + note + ")");
     }

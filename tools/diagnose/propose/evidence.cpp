@@ -113,6 +113,13 @@ void Evidence::take_inputs() {
   measurement_.candidates.clear();
 }
 
+Eigen::ArrayXd Evidence::at_readings(const model::Column& column) const {
+  Eigen::ArrayXd values(static_cast<Eigen::Index>(rows_.size()));
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    values[i] = column[static_cast<Eigen::Index>(rows_[static_cast<std::size_t>(i)])];
+  return values;
+}
+
 double Evidence::reference_of(std::size_t input) const {
   const model::Input& one = machine_.inputs[input];
   if (input < declared_) return one.reference;

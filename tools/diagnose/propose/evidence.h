@@ -43,6 +43,8 @@ class Evidence {
   auto response(std::size_t place) const { return response_.col(static_cast<Eigen::Index>(place)); }
   /// Returns the row of each fit observation.
   const std::vector<std::size_t>& rows() const { return rows_; }
+  /// Returns the values of a column of the measurement in the row of each fit observation.
+  Eigen::ArrayXd at_readings(const model::Column& column) const;
   /// Returns the commanded position of an axis in each row of the measurement. A commanded position excludes
   /// the correction. If the correction were included, every reading would be a separate pose.
   const model::Column& position(std::size_t axis) const { return position_[axis]; }

@@ -84,6 +84,14 @@ std::set<std::pair<int, std::size_t>> drivers_of(const model::Machine& machine,
   return drivers;
 }
 
+bool change_in_time(const std::set<std::pair<int, std::size_t>>& drivers) {
+  return std::any_of(drivers.begin(), drivers.end(), [](const auto& driver) {
+    const auto kind = static_cast<model::SymbolKind>(driver.first);
+    return driver.first < 0 || kind == model::SymbolKind::kInput || kind == model::SymbolKind::kTime ||
+           kind == model::SymbolKind::kVisit;
+  });
+}
+
 bool moves_alike(const Evidence& evidence, const effects::DofPlace& a, const effects::DofPlace& b) {
   const auto x = evidence.response(evidence.index_of(a)), y = evidence.response(evidence.index_of(b));
   return std::abs(x.dot(y)) > evidence.thresholds().shape.moves_alike * x.norm() * y.norm();

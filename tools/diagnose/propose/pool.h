@@ -16,6 +16,10 @@ namespace vernier::diagnose {
 std::set<std::pair<int, std::size_t>> drivers_of(const model::Machine& machine,
                                                  const effects::Candidate& candidate);
 
+/// True if one of the quantities changes in time, at any position: an input, the time, the number of rows or
+/// the run. `drivers`: from drivers_of().
+bool change_in_time(const std::set<std::pair<int, std::size_t>>& drivers);
+
 /// True if motions at two locations move the readings in the same way: the cosine between the responses of
 /// the readings exceeds ShapeThresholds::moves_alike.
 bool moves_alike(const Evidence& evidence, const effects::DofPlace& a, const effects::DofPlace& b);

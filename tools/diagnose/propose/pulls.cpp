@@ -109,9 +109,7 @@ Eigen::VectorXd Pulls::column(const effects::Wave& wave) const {
   const model::ExprPtr expr =
       model::parse_expression_for(machine_, model::to_text(*wave.expression(machine_)));
   const model::Column all = model::evaluate(machine_, *expr, evidence_.measurement().states);
-  Eigen::VectorXd read(static_cast<Eigen::Index>(evidence_.rows().size()));
-  for (Eigen::Index i = 0; i < read.size(); ++i)
-    read[i] = all[static_cast<Eigen::Index>(evidence_.rows()[static_cast<std::size_t>(i)])];
+  Eigen::VectorXd read = evidence_.at_readings(all);
   read.array() -= read.mean();
   return read;
 }
