@@ -251,9 +251,9 @@ void refuse_doubtful(const std::vector<SheetColumn>& columns) {
 /// below zero.
 void refuse_magnitudes(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                        const std::vector<SheetColumn>& columns) {
-  const auto refuse = [](text::Place place, const std::string& text) {
+  const auto refuse = [](const text::Place& place, const std::string& text) {
     throw text::InputError(
-        std::move(place), text,
+        place, text,
         "the deviations are magnitudes, and a magnitude has no sign: import the values with their signs, or "
         "leave the column out (--leave); if the values have signs, correct this text");
   };
