@@ -41,16 +41,15 @@ Eigen::MatrixXd fitted_to_block_alone(const Eigen::MatrixXd& model_rows, double 
 /// Returns the level of each value. Levels are separated where neighbours in size differ by
 /// `least_width`. If that gives one level or too many levels, the range is divided into parts, if
 /// each part has at least that width.
-std::vector<int> levels_of(const std::vector<double>& values, double least_width,
-                           const AcceptanceThresholds& thresholds) {
-  const auto parts = static_cast<int>(thresholds.parts_of_sweep);
+std::vector<int> levels_of(const std::vector<double>& values, double least_width, const FoldExtent& folds) {
+  const auto parts = static_cast<int>(folds.parts_of_sweep);
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
   std::vector<double> begins;
   for (std::size_t i = 1; i < sorted.size(); ++i)
     if (sorted[i] - sorted[i - 1] > least_width) begins.push_back(sorted[i]);
   const double width = sorted.back() - sorted.front();
-  if ((begins.empty() || begins.size() >= thresholds.most_levels) && width > parts * least_width) {
+  if ((begins.empty() || begins.size() >= folds.most_levels) && width > parts * least_width) {
     begins.clear();
     for (int i = 1; i < parts; ++i) begins.push_back(sorted.front() + i * width / parts);
   }
@@ -141,7 +140,7 @@ std::vector<std::vector<int>> level_blocks(const Evidence& evidence) {
   const auto take = [&](const model::Column& column, double least_width) {
     std::vector<double> values;
     for (const std::size_t row : evidence.rows()) values.push_back(column[static_cast<Eigen::Index>(row)]);
-    const std::vector<int> levels = levels_of(values, least_width, thresholds);
+    const std::vector<int> levels = levels_of(values, least_width, evidence.thresholds().search.folds);
     if (*std::max_element(levels.begin(), levels.end()) > 0) all.push_back(levels);
   };
   double fastest = 0;
@@ -155,7 +154,7 @@ std::vector<std::vector<int>> level_blocks(const Evidence& evidence) {
 }
 
 std::vector<std::vector<int>> place_blocks(const Evidence& evidence, std::optional<std::size_t> axis) {
-  const std::size_t parts = evidence.thresholds().acceptance.blocks_of_one_run;
+  const std::size_t parts = evidence.thresholds().search.folds.blocks_of_one_run;
   std::vector<std::vector<int>> all;
   if (axis) {
     const std::vector<std::size_t> order = positions_in_order(evidence, *axis);

@@ -150,8 +150,9 @@ std::string doubt_of_course(const Evidence& evidence, const Pool& pool, const st
   };
   // An effect that follows nothing in time must keep its size; every effect is asked, so the level is strict.
   const bool of_time = change_in_time(drivers);
-  if (const double share = doubted(courses(evidence, static_cast<int>(limits.most_half_waves)),
-                                   of_time ? limits.course_chance : limits.change_chance);
+  if (const double share =
+          doubted(courses(evidence, static_cast<int>(evidence.thresholds().search.shape.most_half_waves)),
+                  of_time ? limits.course_chance : limits.change_chance);
       share > 0)
     return fmt::format(
         "{} explains the error at its location only in part: {:.0f} % of this error has another course over "

@@ -164,7 +164,7 @@ std::vector<Product> Finder::best_products() {
     if (pool_.is_custom(i) && !pool_[i].banned) order.emplace_back(-score_alone(i), i);
   std::sort(order.begin(), order.end());
   std::vector<Product> best;
-  for (std::size_t i = 0; i < std::min(thresholds_.extended, order.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(evidence_.thresholds().search.pool.extended, order.size()); ++i) {
     const effects::Choice& choice = pool_.candidate(order[i].second).choice;
     best.push_back({*choice.place, model::parse_expression(choice.term), choice.inputs, choice.units});
   }
@@ -209,7 +209,7 @@ void Finder::name_usual_pairs() {
       if (std::find(set.begin(), set.end(), one) == set.end()) set.push_back(one);
     const Selection pair = evaluate(set);
     if (set.size() > most_effects_ || pair.criterion > criterion_ + thresholds_.instrument_distance) continue;
-    chosen_ = pair.chosen;
+    chosen_ = set;
     criterion_ = pair.criterion;
     chi_square_ = pair.chi_square;
   }
@@ -359,8 +359,7 @@ double Finder::priced_criterion() const {
   // selection's criterion.
   const auto readings = static_cast<double>(evidence_.residual().size());
   const double own = 2 * std::log(used.own) * (readings - evidence_.freedom());
-  return evidence_.log_determinant() - own + criterion_ +
-         used.price(evidence_.thresholds().noise.price_of_place) * std::log(readings);
+  return evidence_.log_determinant() - own + criterion_ + used.price() * std::log(readings);
 }
 
 double Finder::settle_noise_from(fit::NoiseModel noise) {
@@ -563,8 +562,8 @@ std::string Finder::failed_on_levels(std::size_t item, double gain) const {
 std::string Finder::failed_on_positions(std::size_t item, double gain) const {
   // Other rows at the same positions cannot contradict what a term does between them.
   const bool found = pool_.is_custom(item);
-  const double least = found ? thresholds_.held_out_share * gain
-                             : -2 * evidence_.thresholds().proof.worse * variance_of_reading();
+  const double least =
+      found ? thresholds_.held_out_share * gain : 2 * kEvidenceOfNothing * variance_of_reading();
   for (const std::vector<int>& places : place_blocks(evidence_, pool_.candidate(item).choice.axis))
     if (held_out_decrease(item, places) < least)
       return "test `held out`: the effect does not reduce the residual of readings at held-out positions";

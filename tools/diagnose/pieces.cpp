@@ -129,7 +129,7 @@ std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const 
   const auto beside_a_curve = [&](std::size_t wave) {
     return std::any_of(items.begin(), items.end(), [&](std::size_t item) {
       return choice(item).axis == choice(wave).axis && pool.period_of(item).value_or(0) <= 0 &&
-             static_cast<double>(pool[item].columns.cols()) >= thresholds.curve;
+             static_cast<double>(pool[item].columns.cols()) >= kCoefficientsOfCurve;
     });
   };
   const auto is_cause = [&](std::size_t item) {
@@ -152,7 +152,7 @@ std::vector<std::size_t> pieces_of_one_function(const Evidence& evidence, const 
       [](std::size_t, std::size_t) { return true; });
   std::vector<std::size_t> curves;
   std::copy_if(group.begin(), group.end(), std::back_inserter(curves), [&](std::size_t item) {
-    return static_cast<double>(pool[item].columns.cols()) >= thresholds.curve;
+    return static_cast<double>(pool[item].columns.cols()) >= kCoefficientsOfCurve;
   });
   if (group.size() > (curves.empty() ? thresholds.most_of_one_reading : thresholds.most_beside_a_curve))
     return group;

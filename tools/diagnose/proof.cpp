@@ -8,8 +8,8 @@
 namespace vernier::diagnose {
 
 double Proof::asked(const ProofThresholds& thresholds) const {
-  if (expected < thresholds.least_expected) return -thresholds.worse;
-  return std::clamp(expected - thresholds.chance_sigmas * std::sqrt(2 * expected), 0.0, thresholds.evidence);
+  if (expected < thresholds.evidence) return kEvidenceOfNothing;
+  return std::clamp(expected - thresholds.loss_sigmas * std::sqrt(2 * expected), 0.0, thresholds.evidence);
 }
 
 Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,

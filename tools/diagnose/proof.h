@@ -16,9 +16,9 @@ struct Proof {
                         // variance of the evidence is twice this mean.
   /// Returns the required evidence (natural logarithm) for accepting the step. The required evidence is odds
   /// of 20 to 1. If 99 of 100 true effects with this `expected` reach only smaller odds, the smaller odds are
-  /// required. The logarithm of the required evidence is not negative, with one exception. Exception: if the
-  /// held-out rows depend only weakly on the step, the step must not make the error of these rows larger (by
-  /// more than `worse`).
+  /// required, but the step must not increase the error of the held-out rows. If a true effect does not reach
+  /// odds of 20 to 1 in the mean, the held-out rows give little information: their error must not increase by
+  /// more than an effect without influence increases it (kEvidenceOfNothing).
   double asked(const ProofThresholds& thresholds) const;
 };
 

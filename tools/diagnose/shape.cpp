@@ -80,7 +80,7 @@ struct Jump {
 /// The jump along the axis, at one degree of freedom, that explains most.
 Jump best_jump(const Evidence& evidence, const effects::DofPlace& place, const Eigen::VectorXd& u,
                const Eigen::MatrixXd& beside) {
-  const auto places = static_cast<int>(evidence.thresholds().shape.places_of_jump);
+  const auto places = static_cast<int>(evidence.thresholds().search.shape.places_of_jump);
   const Eigen::ArrayXd answer = evidence.response(evidence.index_of(place)).array();
   Jump best;
   for (int k = 1; k < places; ++k) {
@@ -143,7 +143,8 @@ double log_chance_of_periods(const Evidence& evidence, const Pool& pool,
   const effects::Choice& choice = pool.candidate(item).choice;
   const Eigen::VectorXd u = positions(evidence, *choice.axis);
   const int read = positions_read(u, limits.apart);
-  if (read > 5 * static_cast<int>(limits.most_half_waves)) return -std::numeric_limits<double>::infinity();
+  if (read > 5 * static_cast<int>(evidence.thresholds().search.shape.most_half_waves))
+    return -std::numeric_limits<double>::infinity();
   const Evidence::Range range = evidence.range_of(*choice.axis);
   // A straight line beside the periods is not part of the pattern: a large lead error would hide what the
   // periods leave.
@@ -157,7 +158,7 @@ double log_chance_of_periods(const Evidence& evidence, const Pool& pool,
     }
     along.push_back(one);
     // The frequencies that the search compares; the order of several periods does not matter.
-    const double tries = evidence.thresholds().fine.per_range * (range.high - range.low) / *period;
+    const double tries = evidence.thresholds().search.fine.per_range * (range.high - range.low) / *period;
     log_tries += std::log(std::max(1.0, tries)) - std::log(++periods);
   }
   const Eigen::MatrixXd beside = pool.columns(others);
@@ -180,7 +181,7 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
   const AxisFunction shape = function_of_axis(evidence, *choice.axis, *choice.place, beside);
   const auto coefficients = static_cast<double>(pool[item].columns.cols());
   const double unknowns = coefficients + static_cast<double>(pool[item].scored.scanned.size());
-  const bool curve = coefficients >= limits.curve && pool[item].scored.scanned.empty();
+  const bool curve = coefficients >= kCoefficientsOfCurve && pool[item].scored.scanned.empty();
   if (curve && shape.fast_share > limits.fast_share && shape.log_p < limits.curve_chance)
     return fmt::format(
         "{} removes the error, but {:.0f} % of the error has half-waves shorter than those of a smooth curve "
@@ -195,7 +196,7 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
           "cause has no name",
           range.low + jump.at * (range.high - range.low), pool.candidate(item).spoken);
   }
-  if ((unknowns >= limits.curve || shape.own_table) && shape.seen < seen_per_unknown * unknowns)
+  if ((unknowns >= kCoefficientsOfCurve || shape.own_table) && shape.seen < seen_per_unknown * unknowns)
     return fmt::format(
         "{} has {:.0f} coefficients, but the readings determine only {:.0f} independent functions of the "
         "axis beside the model: any function of the axis would fit equally well",
@@ -225,8 +226,9 @@ Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::
 AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const effects::DofPlace& place,
                               const Eigen::MatrixXd& beside) {
   const ShapeThresholds& limits = evidence.thresholds().shape;
-  const auto most_slow = static_cast<int>(limits.most_half_waves);
-  const auto fewest_slow = static_cast<int>(limits.fewest_half_waves);
+  const ShapeExtent& extent = evidence.thresholds().search.shape;
+  const auto most_slow = static_cast<int>(extent.most_half_waves);
+  const auto fewest_slow = static_cast<int>(extent.fewest_half_waves);
   const Eigen::VectorXd u = positions(evidence, axis);
   const int read = positions_read(u, limits.apart);
   const int slow_count = std::clamp((read - 1) / 2, fewest_slow, std::max(fewest_slow, most_slow));

@@ -477,13 +477,8 @@ class Decision {
       // With too few readings to show structure, the requirement is the same as without u.
       if (freedom < limits_.enough_readings) return !structured && stands_without_u();
     }
-    // The number alone is sufficient for one or two effects that reach the noise. If the result is
-    // only near the noise, or has more effects, it must also have no structure.
     const double sigmas = (reduced - 1) / std::sqrt(2 / freedom);
-    if (sigmas < limits_.hit_sigmas && !accepted_.empty() && accepted_.size() <= limits_.few_effects)
-      return true;
-    if (sigmas < limits_.noise_sigmas) return !structured;
-    return reduced < limits_.doubtful_uncertainty && !structured;
+    return (sigmas < limits_.noise_sigmas || reduced < limits_.doubtful_uncertainty) && !structured;
   }
 
   /// Is the first effect larger than the residual beside it, and is most of chi^2 explained?

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace vernier::maths {
 namespace {
@@ -84,6 +85,20 @@ double chi_square_point(double p, double k) {
     (chi_square_tail(middle, k) > p ? low : high) = middle;
   }
   return (low + high) / 2;
+}
+
+double upper_tail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
+
+double upper_quantile(double p) {
+  // Newton's method on the logarithm of the tail.
+  double z = std::sqrt(std::max(0.0, -2 * std::log(2 * p)));
+  constexpr int kSteps = 20;  // five are needed from p = 0.4 to 1e-300
+  for (int i = 0; i < kSteps; ++i) {
+    const double tail = upper_tail(z);
+    const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
+    z += (std::log(tail) - std::log(p)) * tail / density;
+  }
+  return z;
 }
 
 double log_correlation_tail(double r, double pairs) {

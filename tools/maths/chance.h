@@ -18,6 +18,11 @@ double log_chi_square_tail(double x, double k);
 /// and 0 below the smallest double.
 double chi_square_tail(double x, double k);
 
+/// upper_tail returns the probability that a standard normal variable exceeds z. upper_quantile returns the
+/// value that a standard normal variable exceeds with the probability p. 0 < p < 0.5.
+double upper_tail(double z);
+double upper_quantile(double p);
+
 /// Returns the value x that a chi-square variable with k > 0 degrees of freedom exceeds with the probability
 /// p, 0 < p < 1. The absolute error of the returned x is at most about 1e-15 (10 k + 100).
 double chi_square_point(double p, double k);

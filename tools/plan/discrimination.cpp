@@ -2,8 +2,8 @@
 #include "tools/plan/discrimination.h"
 
 #include <cmath>
-#include <numbers>
 
+#include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
 
 namespace vernier::plan {
@@ -69,17 +69,8 @@ Eigen::VectorXd Discrimination::gains() const {
   return gains;
 }
 
-double normal_quantile(double p) {
-  double low = -40, high = 40;
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (0.5 * std::erfc(-middle / std::numbers::sqrt2) < p ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
 double needed_non_centrality(double confidence, double lead) {
-  const double z = normal_quantile(confidence);
+  const double z = maths::upper_quantile(1 - confidence);
   const double root = z + std::sqrt(z * z + lead);
   return root * root;
 }

@@ -46,8 +46,4 @@ class Discrimination {
 /// sqrt(lambda) = z + sqrt(z^2 + lead). `confidence`: between 0.5 and 1, without the limits.
 double needed_non_centrality(double confidence, double lead);
 
-/// Returns the quantile of the standard normal distribution (by bisection of erfc). `p`: between 0 and 1,
-/// without the limits.
-double normal_quantile(double p);
-
 }  // namespace vernier::plan

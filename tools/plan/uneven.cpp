@@ -17,7 +17,7 @@ namespace {
 
 using Wave = std::complex<double>;
 
-constexpr double kMostPeriods = 1000;  // as a diagnosis looks for (FinePeriodThresholds::most_periods)
+constexpr double kMostPeriods = 1000;  // as a diagnosis looks for (FinePeriodExtent::most_periods)
 constexpr std::size_t kPerRange = 2;   // frequencies evaluated for each that the range can distinguish
 constexpr std::size_t kFrequencies = static_cast<std::size_t>(kMostPeriods) * kPerRange;  // looked at in all
 

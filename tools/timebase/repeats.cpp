@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "tools/maths/chance.h"
 #include "tools/timebase/stretch.h"
 
 namespace vernier::timebase {
@@ -187,11 +188,11 @@ double joint_chance(const std::vector<RepeatBlock>& all, const RepeatLevel& leve
   for (const std::size_t i : level.blocks) {
     const double p = all[i].*chance;
     constexpr double kSmallest = 1e-300;  // whose logarithm is finite
-    z += p < 0.5 ? upper_quantile(std::max(p, kSmallest)) : 0;
+    z += p < 0.5 ? maths::upper_quantile(std::max(p, kSmallest)) : 0;
     tried = std::max(tried, all[i].tried);
   }
   const auto n = static_cast<double>(level.blocks.size()), count = static_cast<double>(all.size());
-  return n > 1 ? std::min(1.0, upper_tail(z / std::sqrt(n)) * tried * count * count / 2) : 1;
+  return n > 1 ? std::min(1.0, maths::upper_tail(z / std::sqrt(n)) * tried * count * count / 2) : 1;
 }
 
 void finish(const std::vector<RepeatBlock>& all, RepeatLevel& level) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/maths/chance.h"
+
 namespace vernier::timebase {
 namespace {
 
@@ -43,8 +45,6 @@ double effective_rows(const Block& a, const Block& b) {
   return static_cast<double>(a.size()) / sum;
 }
 
-double upper_tail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
-
 // With so few independent rows no probability is known: the spreads below divide by the roots of rows - 3 and
 // of rows - 2.
 constexpr double kLeastRows = 4;
@@ -52,24 +52,12 @@ constexpr double kLeastRows = 4;
 double chance_of_agreement(double correlation, double rows) {
   if (rows <= kLeastRows) return 1;
   constexpr double kBelowOne = 1e-12;  // below a correlation of 1, whose transform is infinite
-  return upper_tail(std::atanh(std::min(correlation, 1 - kBelowOne)) * std::sqrt(rows - 3));
+  return maths::upper_tail(std::atanh(std::min(correlation, 1 - kBelowOne)) * std::sqrt(rows - 3));
 }
 
 double chance_of_ratio(double larger, double smaller, double rows) {
   if (rows <= kLeastRows || smaller <= 0) return larger > 0 && smaller <= 0 ? 0 : 1;
-  return upper_tail(std::log(larger / smaller) * std::sqrt(rows - 2));
-}
-
-double upper_quantile(double p) {
-  // Newton's method on the logarithm of the tail.
-  double z = std::sqrt(std::max(0.0, -2 * std::log(2 * p)));
-  constexpr int kSteps = 20;  // five are needed from p = 0.4 to 1e-300
-  for (int i = 0; i < kSteps; ++i) {
-    const double tail = upper_tail(z);
-    const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
-    z += (std::log(tail) - std::log(p)) * tail / density;
-  }
-  return z;
+  return maths::upper_tail(std::log(larger / smaller) * std::sqrt(rows - 2));
 }
 
 }  // namespace vernier::timebase

@@ -27,9 +27,4 @@ double chance_of_agreement(double correlation, double rows);
 /// a ratio of variances).
 double chance_of_ratio(double larger, double smaller, double rows);
 
-/// upper_tail returns the probability that a standard normal variable exceeds z. upper_quantile returns the
-/// value that a standard normal variable exceeds with the probability p < 0.5.
-double upper_tail(double z);
-double upper_quantile(double p);
-
 }  // namespace vernier::timebase

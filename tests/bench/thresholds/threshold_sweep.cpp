@@ -33,6 +33,7 @@ struct SweepOptions {
   std::size_t count = 2, rows = 120, jobs = 2;
   std::uint64_t seed = 1;
   double by = 2;
+  bool search = false;  // the numbers of the search extent instead of the levels
 };
 
 /// A survey with what is needed to diagnose it again and again.
@@ -48,7 +49,7 @@ struct Told {
   bool good = false, wrong = false;
 };
 
-/// One threshold at one factor, over all surveys.
+/// One level, or number of the search extent, at one factor, over all surveys.
 struct Change {
   std::string name;
   double factor = 1, value = 0;
@@ -57,24 +58,30 @@ struct Change {
 };
 
 DiagnoseThresholds changed(const std::string& name, double factor, double* value = nullptr) {
-  DiagnoseThresholds thresholds;
-  thresholds.for_each([&](const std::string& each, auto& number) {
+  fit::Levels levels;
+  SearchExtent search;
+  const auto change = [&](const std::string& each, auto& number) {
     if (each != name) return;
     const double scaled = factor * static_cast<double>(number);
     if constexpr (std::is_integral_v<std::decay_t<decltype(number)>>)
       number = static_cast<std::size_t>(std::max(1L, std::lround(scaled)));
     else
-      // A cosine, or a share of a whole, of more than 1 would switch off what it decides.
+      // A share of a whole of more than 1 would switch off what it decides.
       number = number < 1 && number > 0 ? std::min(scaled, 0.5 * (1 + number)) : scaled;
     if (value != nullptr) *value = static_cast<double>(number);
-  });
-  return thresholds;
+  };
+  levels.for_each(change);
+  search.for_each(change);
+  return {levels, search};
 }
 
-std::vector<std::pair<std::string, double>> all_thresholds() {
-  std::vector<std::pair<std::string, double>> list;
-  DiagnoseThresholds().for_each(
-      [&](const std::string& name, auto& number) { list.emplace_back(name, static_cast<double>(number)); });
+std::vector<std::string> names_of(bool search) {
+  std::vector<std::string> list;
+  const auto take = [&](const std::string& name, auto&) { list.push_back(name); };
+  if (search)
+    SearchExtent().for_each(take);
+  else
+    fit::Levels().for_each(take);
   return list;
 }
 
@@ -146,7 +153,7 @@ void run(const SweepOptions& o) {
     }
   });
   std::vector<Change> changes;
-  for (const auto& [name, value] : all_thresholds())
+  for (const std::string& name : names_of(o.search))
     if (o.only.empty() || std::any_of(o.only.begin(), o.only.end(),
                                       [&](const std::string& part) { return name.rfind(part, 0) == 0; }))
       for (const double factor : {1 / o.by, o.by}) {
@@ -156,8 +163,8 @@ void run(const SweepOptions& o) {
       }
   std::size_t good = 0;
   for (const Told& one : before) good += one.good ? 1 : 0;
-  fmt::print("{} surveys of {} rows, seed {}, {} as asked; {} thresholds\n\n", subjects.size(), o.rows,
-             o.seed, good, changes.size() / 2);
+  fmt::print("{} surveys of {} rows, seed {}, {} as asked; {} numbers\n\n", subjects.size(), o.rows, o.seed,
+             good, changes.size() / 2);
   in_parallel(changes.size(), o.jobs, [&](std::size_t i) {
     Change& change = changes[i];
     const DiagnoseThresholds thresholds = changed(change.name, change.factor);
@@ -173,7 +180,7 @@ void run(const SweepOptions& o) {
     fmt::print(stderr, "\r{} {}          ", change.name, change.factor);
   });
   fmt::print(
-      "| threshold | at | verdicts | ladders | right answers | new wrong names "
+      "| level | at | verdicts | ladders | right answers | new wrong names "
       "|\n|---|---|---|---|---|---|\n");
   std::vector<std::string> idle;
   for (std::size_t i = 0; i + 1 < changes.size(); i += 2) {
@@ -193,9 +200,9 @@ void run(const SweepOptions& o) {
 
 int main(int argc, char** argv) {
   vernier::bench::SweepOptions o;
-  CLI::App app("Halves and doubles each threshold of a diagnosis over surveys of known truth");
+  CLI::App app("Halves and doubles each level of a diagnosis over surveys of known truth");
   app.add_option("--family", o.families, "machine families")->delimiter(',');
-  app.add_option("--only", o.only, "thresholds whose names begin so")->delimiter(',');
+  app.add_option("--only", o.only, "levels whose names begin so")->delimiter(',');
   app.add_option("-n,--count", o.count, "surveys of each family and class");
   app.add_option("--rows", o.rows, "rows of a survey")->check(CLI::Range(20, 1000000));
   app.add_option("--seed", o.seed, "of the first survey");
@@ -203,6 +210,7 @@ int main(int argc, char** argv) {
   app.add_option("-j,--jobs", o.jobs, "diagnoses at the same time")->check(CLI::Range(1, 64));
   app.add_option("--by", o.by, "factor instead of 2: by 100 what is left unchanged decides nothing at all")
       ->check(CLI::Range(1.01, 1e6));
+  app.add_flag("--search", o.search, "the numbers of the search extent instead of the levels");
   CLI11_PARSE(app, argc, argv);
   vernier::bench::run(o);
   return 0;

@@ -226,10 +226,5 @@ TEST(Stretch, ConcordanceIsOneOnlyForEqualsAndTrendIsNoShift) {
   EXPECT_FALSE(stretch(series, 0, 20).has_value());
 }
 
-TEST(Stretch, QuantileIsTheInverseOfTheTail) {
-  for (const double p : {0.4, 0.1, 1e-3, 1e-9, 1e-100})
-    EXPECT_NEAR(std::log(upper_tail(upper_quantile(p)) / p), 0, 1e-9);
-}
-
 }  // namespace
 }  // namespace vernier::time_repair_test

@@ -46,5 +46,11 @@ TEST(Chance, CorrelationTailIsHalfOfBothSides) {
   EXPECT_NEAR(std::exp(log_correlation_tail(0, 10)), 0.5, 1e-12);
 }
 
+TEST(UpperTail, QuantileIsTheInverse) {
+  for (const double p : {0.4, 0.1, 1e-3, 1e-9, 1e-100})
+    EXPECT_NEAR(std::log(upper_tail(upper_quantile(p)) / p), 0, 1e-9);
+  EXPECT_NEAR(upper_quantile(0.01), 2.3263478740, 1e-9);
+}
+
 }  // namespace
 }  // namespace vernier::chance_test

@@ -82,6 +82,7 @@ class Enumerator {
   Enumerator(const Evidence& evidence, const std::vector<effects::Effect>& effects)
       : evidence_(evidence),
         thresholds_(evidence.thresholds().candidates),
+        extent_(evidence.thresholds().search.candidates),
         machine_(evidence.machine()),
         axes_(machine_),
         effects_(effects),
@@ -493,16 +494,15 @@ class Enumerator {
         const Evidence::Range range = evidence_.time_range();
         const double length = range.high - range.low;
         if (length <= 0) return {};
-        return logarithmic(
-            std::max(thresholds_.time_least_steps * range.step, length / thresholds_.time_least_part),
-            thresholds_.time_most * length, thresholds_.time_values);
+        return logarithmic(std::max(extent_.time_least_steps * range.step, length / extent_.time_least_part),
+                           extent_.time_most * length, extent_.time_values);
       }
       case effects::UnknownKind::kTravel: {
         const Evidence::Range& range = range_[*choice.axis];
         const double length = range.high - range.low;
         if (length <= 0) return {};
-        return logarithmic(length / thresholds_.travel_least_part, length / thresholds_.travel_most_part,
-                           thresholds_.travel_values);
+        return logarithmic(length / extent_.travel_least_part, length / extent_.travel_most_part,
+                           extent_.travel_values);
       }
       case effects::UnknownKind::kPeriod:
         return periods(*choice.axis);
@@ -518,7 +518,7 @@ class Enumerator {
     const double length = range.high - range.low;
     std::vector<double> grid;
     if (length <= 0 || range.step <= 0) return grid;
-    const CandidateThresholds& to = thresholds_;
+    const CandidateExtent& to = extent_;
     // Even steps cannot distinguish a period below two of them from a longer one. Uneven steps
     // can.
     const double shortest = std::max(range.even ? to.steps_per_period * range.step : 0, shortest_[axis]);
@@ -530,7 +530,7 @@ class Enumerator {
       grid.push_back(1 / f);
     if (machine_.axes[axis].rotary)
       for (double harmonic = 1; harmonic <= static_cast<double>(to.harmonics_of_turn); ++harmonic)
-        if (harmonic / 360 <= fastest && length > to.least_of_a_period * 360 / harmonic)
+        if (harmonic / 360 <= fastest && length > thresholds_.least_of_a_period * 360 / harmonic)
           grid.push_back(360 / harmonic);
     // At two even steps a wave has lost its sine. It may still be the only form of the true wave.
     if (range.even && !grid.empty()) grid.push_back(2 * range.step);
@@ -551,7 +551,7 @@ class Enumerator {
     if (any_tree(*choice.form, is_switched_by_wave) && never_changes(item.candidate)) return;
     for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(item.candidate))
       item.grid.push_back(grid_of(choice, *choice.effect->find_unknown(unknown.rule)));
-    item.most_driven = thresholds_.driven_out;
+    item.most_driven = extent_.driven_out;
     item.may_lose_columns = choice.form->asks_for("hats") || choice.runs.size() > 1 ||
                             choice.form->place == effects::PlaceRule::kPoint;
     add_fine_periods(item);
@@ -593,6 +593,7 @@ class Enumerator {
 
   const Evidence& evidence_;
   const CandidateThresholds& thresholds_;
+  const CandidateExtent& extent_;
   const model::Machine& machine_;
   effects::AxisPlaces axes_;
   const std::vector<effects::Effect>& effects_;
@@ -631,8 +632,7 @@ std::vector<char> outshone_places(const Evidence& evidence) {
         continue;
       const double both = norm[i] * norm[k];
       if (!(norm[k] > to.outshone * norm[i]) || both == 0) continue;
-      outshone[i] =
-          1 - std::abs(evidence.response(i).dot(evidence.response(k))) / both < to.same_place ? 1 : 0;
+      outshone[i] = 1 - std::abs(evidence.response(i).dot(evidence.response(k))) / both < kSamePlace ? 1 : 0;
     }
   return outshone;
 }
@@ -658,7 +658,7 @@ std::vector<effects::DofPlace> distinct_places(const Evidence& evidence, bool an
     bool known = false;
     for (std::size_t k = 0; k < seen.size() && !known; ++k)
       known = (!angles_apart || is_kind(places[k]) == is_kind(evidence.places()[i])) &&
-              1 - std::abs(column.dot(seen[k])) < evidence.thresholds().candidates.same_place;
+              1 - std::abs(column.dot(seen[k])) < kSamePlace;
     if (known) continue;
     seen.push_back(column);
     places.push_back(evidence.places()[i]);

@@ -48,7 +48,7 @@ Evidence::Evidence(const model::Machine& fitted, const model::Measurement& measu
                    const DiagnoseThresholds& thresholds)
     : thresholds_(thresholds), machine_(fitted) {
   const model::ParameterSet parameters(fitted, fit::setups_of_fit_rows(measurement));
-  const std::size_t stride = stride_of(measurement, parameters.size(), thresholds.evidence.most_numbers);
+  const std::size_t stride = stride_of(measurement, parameters.size(), thresholds.search.most_numbers);
   stride_ = static_cast<double>(stride);
   measurement_ = thinned(measurement, stride);
   position_ = model::commanded_states(measurement_).axis;
@@ -167,7 +167,7 @@ void Evidence::silence_rounding() {
   for (std::size_t i = 0; i < places_.size(); ++i)
     largest[kind(i)] = std::max(largest[kind(i)], response(i).norm());
   for (std::size_t i = 0; i < places_.size(); ++i)
-    if (response(i).norm() < thresholds_.evidence.rounding * largest[kind(i)])
+    if (response(i).norm() < kRoundingOfResponse * largest[kind(i)])
       response_.col(static_cast<Eigen::Index>(i)).setZero();
 }
 
@@ -213,7 +213,7 @@ void Evidence::absorb() {
   jacobian *= scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobian.transpose() * jacobian);
   const Eigen::VectorXd& values = eigen.eigenvalues();
-  const double limit = std::pow(thresholds_.evidence.absorb_cutoff, 2) * values[values.size() - 1];
+  const double limit = std::pow(kAbsorbCutoff, 2) * values[values.size() - 1];
   Eigen::Index lost = 0;
   while (lost < values.size() && values[lost] <= limit) ++lost;  // all of them if no reading depends on any
   const Eigen::Index rank = std::min(values.size() - lost, residual_.size());
@@ -239,7 +239,7 @@ void Evidence::split_blocks() {
   std::map<std::size_t, std::size_t> parts, first;
   std::size_t next = 0;
   for (const auto& [run, rows] : rows_of_run) {
-    const AcceptanceThresholds& cut = thresholds_.acceptance;
+    const FoldExtent& cut = thresholds_.search.folds;
     parts[run] = std::max<std::size_t>(1, rows.size() * cut.blocks_of_one_run / total);
     if (static_cast<double>(rows.size()) < cut.large_run * static_cast<double>(total)) parts[run] = 1;
     first[run] = next;
@@ -414,7 +414,7 @@ std::vector<int> Evidence::parts_of_runs() const {
     const auto& rows = rows_of_run[block_of(rows_[i])];
     const auto at =
         static_cast<std::size_t>(std::lower_bound(rows.begin(), rows.end(), rows_[i]) - rows.begin());
-    parts[i] = static_cast<int>(at * thresholds_.acceptance.parts_of_run / rows.size());
+    parts[i] = static_cast<int>(at * thresholds_.search.folds.parts_of_run / rows.size());
   }
   return parts;
 }

@@ -102,13 +102,13 @@ double peak_between(const Positions& positions, Index column, double low, double
 /// Returns the positions of an axis, without repeats. Positions that the shortest searched wave
 /// does not distinguish count once, however often they were read. Each has weight 1.
 Positions stations(const Evidence& evidence, std::size_t axis, double length, int sense = 0) {
-  const double apart = 1 / (4 * evidence.thresholds().fine.most_periods);
+  const double apart = 1 / (4 * evidence.thresholds().search.fine.most_periods);
   const std::vector<double> kept = evidence.places_read(axis, sense, apart * length);
   const auto count = static_cast<Index>(kept.size());
   return {Eigen::Map<const Eigen::ArrayXd>(kept.data(), count), Eigen::MatrixXd::Ones(count, 1)};
 }
 
-double most_frequency(const Positions& positions, double length, const FinePeriodThresholds& limits) {
+double most_frequency(const Positions& positions, double length, const FinePeriodExtent& limits) {
   return std::min(limits.most_periods, limits.per_position * static_cast<double>(positions.at.size())) /
          length;
 }
@@ -167,10 +167,11 @@ double shortest_of(const Evidence& evidence, const Positions& positions, double 
   // same phase.
   constexpr double kPerWindow = 5;  // tested frequencies for each that the range distinguishes
   const FinePeriodThresholds& limits = evidence.thresholds().fine;
-  const double steps_per_alias = evidence.thresholds().candidates.steps_per_period;
+  const double steps_per_alias = evidence.thresholds().search.candidates.steps_per_period;
   const double step = 1 / (kPerWindow * length), first = 1.5 / length;
-  const auto count = static_cast<Index>(
-      std::ceil((steps_per_alias * most_frequency(positions, length, limits) - first) / step));
+  const auto count = static_cast<Index>(std::ceil(
+      (steps_per_alias * most_frequency(positions, length, evidence.thresholds().search.fine) - first) /
+      step));
   if (count < 3) return 0;
   const Eigen::MatrixXd window = powers(positions, first, step, count);
   const double all = std::pow(positions.sum.sum(), 2);
@@ -180,7 +181,7 @@ double shortest_of(const Evidence& evidence, const Positions& positions, double 
       continue;
     const double middle = first + static_cast<double>(k) * step;
     const double peak = peak_between(positions, 0, middle - step, middle + step);
-    if (power_at(positions, 0, peak) > limits.alias_same * all) return steps_per_alias / peak;
+    if (power_at(positions, 0, peak) > kSameAlias * all) return steps_per_alias / peak;
   }
   return 0;
 }
@@ -201,7 +202,7 @@ double shortest_told_apart(const Evidence& evidence, std::size_t axis) {
     const Positions one = stations(evidence, axis, length, sense);
     std::size_t rows = 0;
     for (const std::size_t row : evidence.rows()) rows += evidence.sense_of(axis, row) == sense ? 1 : 0;
-    const CandidateThresholds& limits = evidence.thresholds().candidates;
+    const CandidateExtent& limits = evidence.thresholds().search.candidates;
     if (one.at.size() < static_cast<Index>(limits.comb_positions) ||
         static_cast<double>(rows) < limits.comb_share * static_cast<double>(evidence.rows().size()))
       return together;
@@ -212,7 +213,7 @@ double shortest_told_apart(const Evidence& evidence, std::size_t axis) {
 
 FinePeriods fine_periods(const Evidence& evidence, std::size_t axis, const std::vector<double>& grid,
                          double shortest) {
-  const FinePeriodThresholds& limits = evidence.thresholds().fine;
+  const FinePeriodExtent& limits = evidence.thresholds().search.fine;
   if (grid.empty()) return {};
   const Evidence::Range range = evidence.range_of(axis);
   FinePeriods fine;
@@ -322,7 +323,7 @@ std::vector<double> best_by_gain(const Evidence& evidence, const FinePeriods& fi
                                  const ProjectedWaves& waves, const Eigen::MatrixXd& beside,
                                  const Eigen::VectorXd& residual) {
   const WaveOfAxis wave{fine.axis, fine.carrier};
-  const FinePeriodThresholds& limits = evidence.thresholds().fine;
+  const std::size_t peaks = evidence.thresholds().search.fine.peaks;
   const Eigen::MatrixXd gains = gains_beside(evidence, waves, beside, residual).transpose();
   const double freedom = std::max(1.0, evidence.freedom()), all = residual.squaredNorm();
   const double left = std::max(all - gains.maxCoeff(), evidence.noise_known() ? freedom : 0.0);
@@ -332,11 +333,11 @@ std::vector<double> best_by_gain(const Evidence& evidence, const FinePeriods& fi
   constexpr double kKept = 0.9;             // share of a peak's height between two tested frequencies
   constexpr std::size_t kMostRefined = 24;  // peaks
   const double high = kKept * kKept * gains.maxCoeff();
-  const double margin = left / freedom * limits.nearly_as_well;
+  const double margin = left / freedom * evidence.thresholds().fine.nearly_as_well;
   std::vector<std::pair<double, double>> refined;  // gain and period
   for (const Index k :
        best_peaks(gains, 0, all / freedom * 2 * std::log(fine.tries()), margin, kMostRefined)) {
-    if (refined.size() >= limits.peaks && gains(0, k) < high) continue;
+    if (refined.size() >= peaks && gains(0, k) < high) continue;
     const double middle = fine.begin() + static_cast<double>(k) * fine.step;
     const auto gain_at = [&](double frequency) {
       return wave_gains(evidence, wave, frequency, 0, 1, beside, residual)[0];
@@ -352,7 +353,7 @@ std::vector<double> best_by_gain(const Evidence& evidence, const FinePeriods& fi
   std::vector<double> periods;
   double slowest = 0;
   for (const auto& [gain, period] : refined) {
-    if (periods.size() < limits.peaks) periods.push_back(period);
+    if (periods.size() < peaks) periods.push_back(period);
     if (gain >= refined.front().first - margin) slowest = std::max(slowest, period);
   }
   if (std::find(periods.begin(), periods.end(), slowest) == periods.end() && slowest > 0)
@@ -400,12 +401,12 @@ std::vector<std::vector<double>> promising_periods(const Evidence& evidence,
   const Eigen::MatrixXd power = powers(positions, fine.slowest, fine.step, count_from(fine.slowest));
   // Power at which the wave explains as much as the highest of so many waves explains of noise.
   const double variance = residual.squaredNorm() / std::max(1.0, evidence.freedom());
-  const FinePeriodThresholds& limits = evidence.thresholds().fine;
+  const std::size_t peaks = evidence.thresholds().search.fine.peaks;
+  const double nearly = evidence.thresholds().fine.nearly_as_well;
   for (std::size_t i = 0; i < of_axis.size(); ++i) {
     const double unit = variance * of_axis[i]->carrier.squaredNorm() / 2;
     const double least = unit * 2 * std::log(fine.tries());
-    for (const Index k :
-         best_peaks(power, static_cast<Index>(i), least, unit * limits.nearly_as_well, limits.peaks)) {
+    for (const Index k : best_peaks(power, static_cast<Index>(i), least, unit * nearly, peaks)) {
       const double middle = fine.slowest + static_cast<double>(k) * fine.step;
       found[i].push_back(
           1 / peak_between(positions, static_cast<Index>(i), middle - fine.step, middle + fine.step));

@@ -100,6 +100,7 @@ bool moves_alike(const Evidence& evidence, const effects::DofPlace& a, const eff
 Pool::Pool(const Evidence& evidence, const Scanner& scanner)
     : evidence_(evidence),
       thresholds_(evidence.thresholds().pool),
+      extent_(evidence.thresholds().search.pool),
       scanner_(scanner),
       axes_(evidence.machine()) {}
 
@@ -110,7 +111,7 @@ const effects::Candidate& Pool::candidate(std::size_t i) const {
 double Pool::penalty(const Scored& scored) const {
   const ScannedCandidate& item = scanner_.candidates()[scored.candidate];
   double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) +
-                rank_of(item.candidate, thresholds_.step_of_place) + item.penalty;
+                rank_of(item.candidate, extent_.step_of_place) + item.penalty;
   // A jump between runs can follow any slow drift. It is named only if no continuous effect fits
   // as well.
   const effects::Choice& choice = item.candidate.choice;
@@ -121,7 +122,7 @@ double Pool::penalty(const Scored& scored) const {
   // A scanned unknown counts as many tests as the grid has distinct values, if that exceeds the
   // penalty of a coefficient.
   for (std::size_t i = 0; i < item.grid.size(); ++i) {
-    double tries = static_cast<double>(item.grid[i].size()) / thresholds_.points_per_try;
+    double tries = static_cast<double>(item.grid[i].size()) / extent_.points_per_try;
     if (item.fine.holds(scored.scanned.at(i))) tries += item.fine.tries();
     cost += std::max(0.0, 2 * std::log(tries) - std::log(static_cast<double>(evidence_.rows().size())));
   }
@@ -138,7 +139,7 @@ std::string Pool::place_key(const Scored& scored) const {
   for (const std::string& input : c.inputs) key += " " + input;
   if (c.place) key += fmt::format(" {}.{}.{}", c.place->workpiece, c.place->transform, c.place->dof);
   if (has_period(candidate))
-    key += fmt::format(" p{}", std::lround(thresholds_.periods_per_e * std::log(scored.scanned[0])));
+    key += fmt::format(" p{}", std::lround(extent_.periods_per_e * std::log(scored.scanned[0])));
   key += c.runs.size() == 1 ? " " + c.runs[0] : "";
   if (c.effect == &effects::custom_effect()) key += " " + c.term;
   return key;
@@ -161,12 +162,12 @@ void Pool::add(const std::vector<Scored>& scored, const Eigen::MatrixXd& beside)
   std::size_t taken = 0;
   for (const std::size_t i : order) {
     std::size_t& count = of_effect[scanner_.candidates()[scored[i].candidate].candidate.choice.effect->id];
-    if (taken >= thresholds_.most_at_once && count >= thresholds_.of_each_effect) continue;
+    if (taken >= extent_.most_at_once && count >= extent_.of_each_effect) continue;
     ++count;
     ++taken;
     Item item;
     item.scored = scored[i];
-    if (value[i] > thresholds_.refined_above) scanner_.refine(item.scored, beside);
+    if (value[i] > extent_.refined_above) scanner_.refine(item.scored, beside);
     const std::string key =
         place_key(item.scored) + " " +
         scanner_.candidates()[item.scored.candidate].candidate.choice.form->label +
@@ -216,7 +217,7 @@ SelectionProblem Pool::problem_of(const std::vector<std::size_t>& items) const {
   }
   p.freedom = evidence_.freedom();
   p.noise_known = evidence_.noise_known();
-  p.least_pivot = thresholds_.least_pivot;
+  p.least_pivot = kLeastPivot;
   return p;
 }
 

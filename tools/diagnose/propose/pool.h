@@ -102,6 +102,7 @@ class Pool {
 
   const Evidence& evidence_;
   const PoolThresholds& thresholds_;
+  const PoolExtent& extent_;
   const Scanner& scanner_;
   effects::AxisPlaces axes_;
   std::vector<Item> items_;

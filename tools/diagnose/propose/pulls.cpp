@@ -47,7 +47,7 @@ bool Pulls::admits(const effects::EffectForm& form, const effects::DofPlace& pla
 
 /// Driven by several axes, or by any; and small enough for a tick.
 bool Pulls::is_told(const std::optional<effects::Wave>& wave, bool several) const {
-  if (!wave || wave->terms() > evidence_.thresholds().candidates.most_terms_of_gravity) return false;
+  if (!wave || wave->terms() > evidence_.thresholds().search.candidates.most_terms_of_gravity) return false;
   const auto phases = wave->phases();
   if (!several) return !phases.empty();
   return phases.size() > 1 || std::any_of(phases.begin(), phases.end(), [](const std::vector<double>& by) {

@@ -38,7 +38,7 @@ class Structure {
   Structure(const Evidence& evidence, const effects::Effect& effect, const effects::AxisPlaces& axes,
             std::size_t axis)
       : evidence_(evidence),
-        thresholds_(evidence.thresholds().candidates),
+        extent_(evidence.thresholds().search.candidates),
         pool_(evidence.thresholds().pool),
         machine_(evidence.machine()),
         effect_(effect),
@@ -89,7 +89,7 @@ class Structure {
     constexpr double kFactor = 2;      // sums of two delays describe the delays between them
     constexpr double kShortest = 128;  // of the longest run
     const double rows = static_cast<double>(evidence_.rows().size()) / static_cast<double>(ends.size());
-    const double shortest = std::max(longest / kShortest, thresholds_.time_least_steps * longest / rows);
+    const double shortest = std::max(longest / kShortest, extent_.time_least_steps * longest / rows);
     for (double delay = longest; delay >= shortest; delay /= kFactor)
       delays_.push_back(maths::to_two_digits(delay));
   }
@@ -179,15 +179,15 @@ class Structure {
     SelectionProblem p = selection_problem(all, residual);
     p.freedom = std::max(1.0, evidence_.freedom() - static_cast<double>(beside.cols()));
     p.noise_known = evidence_.noise_known();
-    p.least_pivot = pool_.least_pivot;
+    p.least_pivot = kLeastPivot;
     for (Eigen::Index j = 0; j < all.cols(); ++j)
       p.entries.push_back(
           {j, 1, 2 * std::log(static_cast<double>(all.cols())), 0, static_cast<std::size_t>(j)});
-    return select(p, thresholds_.most_of_response).chosen;
+    return select(p, extent_.most_of_response).chosen;
   }
 
   const Evidence& evidence_;
-  const CandidateThresholds& thresholds_;
+  const CandidateExtent& extent_;
   const PoolThresholds& pool_;
   const model::Machine& machine_;
   const effects::Effect& effect_;

@@ -370,8 +370,7 @@ std::vector<double> Scanner::aliases(const Scored& scored, const Eigen::MatrixXd
   const std::size_t axis = *candidate.choice.axis;
   const Evidence::Range range = evidence_.range_of(axis);
   const double length = range.high - range.low, own = 1 / scored.scanned[0];
-  const FinePeriodThresholds& limits = evidence_.thresholds().fine;
-  const double most = limits.most_periods / length;
+  const double most = evidence_.thresholds().search.fine.most_periods / length;
 
   const ScanTarget target = this->target(beside);
   ColumnMaker maker(evidence_);

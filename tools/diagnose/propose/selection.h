@@ -25,9 +25,9 @@ struct SelectionProblem {
   double observations = 0;  // number of observations, for the penalty of a coefficient (BIC)
   double freedom = 0;       // observations - rank of the model
   bool noise_known = false;
-  double least_pivot = PoolThresholds().least_pivot;  // smallest share of its square that a column must keep
-                                                      // after projection on the complement of the other
-                                                      // columns
+  double least_pivot = kLeastPivot;  // smallest share of its square that a column must keep
+                                     // after projection on the complement of the other
+                                     // columns
   std::vector<SelectionEntry> entries;
 };
 

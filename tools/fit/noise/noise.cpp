@@ -29,11 +29,11 @@ NoiseRatios ratios_of(const NoiseModel& model) {
 
 double NoiseModel::shared() const { return std::sqrt(pose * pose + run * run + drift * drift); }
 
-double NoiseModel::price(double of_place) const {
+double NoiseModel::price() const {
   double parameters = (pose > 0 ? 1 : 0) + (run > 0 ? 1 : 0) + (drift > 0 ? 2 : 0);
   std::set<std::size_t> places;  // for a set-up the row is relevant
   for (const NoiseStep& step : steps)
-    parameters += step.of_set_up() || !places.insert(step.row).second ? 1 : 1 + of_place;
+    parameters += step.of_set_up() || !places.insert(step.row).second ? 1 : 1 + kPriceOfPlace;
   return parameters;
 }
 

@@ -46,8 +46,8 @@ struct NoiseModel {
   double total() const;
   /// Returns the penalty of the noise model in a selection criterion (BIC), in units of the logarithm of the
   /// number of readings. Each parameter of the noise model adds 1 to the penalty. A step of the instrument
-  /// adds 1 to the penalty for its height in each kind of reading, and `of_place` for its row.
-  double price(double of_place = NoiseThresholds().price_of_place) const;
+  /// adds 1 to the penalty for its height in each kind of reading, and kPriceOfPlace for its row.
+  double price() const;
 };
 
 /// Returns the design-matrix columns of the steps, one entry per reading: 0 before the step; from the step on

@@ -9,11 +9,27 @@
 #include <optional>
 
 #include "tools/fit/noise/whitener.h"
+#include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
 #include "tools/maths/median.h"
 
 namespace vernier::fit {
 namespace {
+
+/// Returns the decrease of -2 log likelihood that a noise component without a cause reaches with the
+/// probability `chance`. A component has a standard deviation, which is 0 without it and thus at the end of
+/// its range, and `parameters` - 1 others: half of the decreases have the chi-square distribution of
+/// `parameters`, half that of one fewer (Self and Liang 1987; none: no decrease).
+double needed_decrease(double chance, int parameters) {
+  const auto tail = [parameters](double x) {
+    return (maths::chi_square_tail(x, parameters) +
+            (parameters > 1 ? maths::chi_square_tail(x, parameters - 1) : 0)) /
+           2;
+  };
+  double low = 0, high = 100;
+  for (int step = 0; step < 50; ++step) (tail((low + high) / 2) > chance ? low : high) = (low + high) / 2;
+  return high;
+}
 
 /// -2 log of the restricted likelihood as a function of the ratios, with the independent part at
 /// its best value.
@@ -164,7 +180,7 @@ StepsAtRow best_steps(const NoiseLayout& layout, const Eigen::VectorXd& residual
     }
   StepsAtRow best;
   for (auto& [row, at] : of_row) {
-    at.net -= limits.price_of_place * unit;
+    at.net -= kPriceOfPlace * unit;
     if (at.net > best.net) best = std::move(at);
   }
   return best;
@@ -193,6 +209,8 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
   const double white = likelihood(parts.ratios());
   double best = white;
   constexpr std::array<double, 5> kLogRatios = {-3, -1.5, 0, 1.5, 3};
+  const double one_needed = needed_decrease(limits.chance, 1),
+               drift_needed = needed_decrease(limits.chance, 2);
   // Adds one component after the other, the one with the largest decrease first.
   for (int round = 0; round < 3; ++round) {
     NoiseParts next = parts;
@@ -224,7 +242,7 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
         starts.back().pose = true;
         starts.back().log[0] = log;
       }
-      offer(best_start(starts), limits.one_component);
+      offer(best_start(starts), one_needed);
     }
     if (!parts.run && layout.has_runs) {
       starts.clear();
@@ -233,7 +251,7 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
         starts.back().run = true;
         starts.back().log[1] = log;
       }
-      offer(best_start(starts), limits.one_component);
+      offer(best_start(starts), one_needed);
     }
     if (!parts.drift) {
       constexpr double kTimeSteps = 1.2;  // of the logarithm of a time constant: a factor of 3.3
@@ -248,7 +266,7 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
             starts.back().log[3] = time;
           }
         const double choice = drifts == 0 ? 0 : 2 * std::log(static_cast<double>(layout.series.size()));
-        if (!starts.empty()) offer(best_start(starts), limits.drift_component + choice);
+        if (!starts.empty()) offer(best_start(starts), drift_needed + choice);
       }
     }
     if (gain <= 0) break;
@@ -262,7 +280,7 @@ NoiseModel estimate_components(const NoiseLayout& layout, const Eigen::VectorXd&
     by_rows.log[3] = std::clamp(parts.log[3] - std::log(layout.step), 0.0, std::log(10 * layout.row_span));
     const double value =
         descend(likelihood, by_rows, likelihood(by_rows.ratios()), 0, std::log(10 * layout.row_span));
-    if (value < best - limits.one_component) {
+    if (value < best - one_needed) {
       parts = by_rows;
       best = value;
     }
@@ -361,7 +379,7 @@ NoiseModel estimate_noise(const NoiseLayout& layout, const Eigen::VectorXd& resi
   for (NoiseStep& step : steps) step.std *= with.own;
   with.steps = std::move(steps);
   const auto criterion = [&](const NoiseModel& model) {
-    return model.price(limits.price_of_place) * std::log(n) - 2 * model.log_likelihood;
+    return model.price() * std::log(n) - 2 * model.log_likelihood;
   };
   if (criterion(with) >= criterion(without)) return without;
   with.support += 2 * (with.log_likelihood - without.log_likelihood) + without.support;

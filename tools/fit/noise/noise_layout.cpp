@@ -59,11 +59,10 @@ std::vector<int> groups_along(const model::Column& axis, const LayoutThresholds&
   const double range = order.empty() ? 1 : std::max(axis[order.back()] - axis[order.front()], 1e-12);
   for (std::size_t i = 1; i < order.size(); ++i) {
     steps.push_back((axis[order[i]] - axis[order[i - 1]]) / range);
-    if (steps.back() > limits.no_step) least = std::min(least, steps.back());
+    if (steps.back() > kNoStep) least = std::min(least, steps.back());
   }
   const auto below = static_cast<std::size_t>(limits.least_revisits * static_cast<double>(steps.size()));
-  const double tolerance =
-      std::max(tolerance_of(steps, limits.revisit_gap, least, below, limits), limits.no_step);
+  const double tolerance = std::max(tolerance_of(steps, limits.revisit_gap, least, below, limits), kNoStep);
   std::vector<int> group(order.size(), 0);
   for (std::size_t i = 1; i < order.size(); ++i)
     group[static_cast<std::size_t>(order[i])] =
@@ -107,7 +106,7 @@ NoiseLayout noise_layout(const model::Measurement& measurement, const std::vecto
   NoiseLayout layout;
   const model::States& states = measurement.states;
   const std::vector<double> steps = relative_steps(measurement, model::commanded_states(measurement).axis);
-  const double tolerance = tolerance_of(steps, limits.pose_gap, limits.no_step, 1, limits);
+  const double tolerance = tolerance_of(steps, limits.pose_gap, kNoStep, 1, limits);
   std::vector<int> pose(measurement.rows(), 0);
   for (std::size_t row = 1; row < pose.size(); ++row)
     pose[row] = pose[row - 1] + (steps[row] > tolerance ? 1 : 0);
