@@ -127,8 +127,8 @@ constexpr std::int32_t cubic_between(const std::int32_t* c, std::int64_t fractio
 
 /// Computes the values of kColumns columns of one record. piece_values is recursive, so that the compiler
 /// removes the loop. Real-time safe.
-template <unsigned kDegree, unsigned kColumns>
-constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, std::int32_t* out) noexcept {
+template <unsigned kDegree, unsigned kColumns, class Value>
+constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, Value* out) noexcept {
   static_assert(kDegree == 1 || kDegree == 3);
   *out = kDegree == 1 ? linear_between(c, fraction) : cubic_between(c, fraction);
   if constexpr (kColumns > 1) piece_values<kDegree, kColumns - 1>(c + kDegree + 1, fraction, out + 1);
@@ -138,8 +138,8 @@ constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, std::i
 /// columns. `out`: kColumns values, each in the format of its column. The error is at most 1/2 LSB of the
 /// column (linear) or 5/2 LSB (cubic), plus 2^-29 of the change in the segment because of the fraction.
 /// Real-time safe.
-template <unsigned kDegree, unsigned kColumns>
-inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
+template <unsigned kDegree, unsigned kColumns, class Value>
+inline void look_up(const ErrorTable& table, std::int32_t position, Value* out) noexcept {
   const std::int32_t held = higher(position, table.records[0]);
   const std::int32_t* const record =
       table.records + std::size_t{piece_of(table, held)} * (kSegmentWords + kColumns * (kDegree + 1));
@@ -148,7 +148,8 @@ inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t
 
 /// Interpolates like look_up<kDegree, kColumns>, with the degree and number of columns read from the table at
 /// run time. Both forms of look_up() give identical values. Real-time safe.
-inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
+template <class Value>
+inline void look_up(const ErrorTable& table, std::int32_t position, Value* out) noexcept {
   const std::int32_t held = higher(position, table.records[0]);
   const std::int32_t* const record = table.record(piece_of(table, held));
   const std::int64_t fraction = fraction_in(segment_at(record), held);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <memory>
 
+#include "comp/dense.h"
 #include "comp/verify.h"
 #include "tests/bench/kernels/counted.h"
 #include "tests/bench/kernels/frame_peers.h"
@@ -44,8 +45,17 @@ struct Bench {
   std::unique_ptr<Compensator> compensator;
   LagState lags[kMaxLags] = {};
   std::vector<Chain> chains;
+  std::vector<DenseStep> steps;
+  std::vector<DenseTerm> terms;
+  std::vector<DenseFrame> frames;  // per pose, constants and channels in place
 
   const Program& program() const { return view.program(); }
+  DenseMemory dense(std::size_t pose) {
+    return {steps.data(),
+            terms.data(),
+            &frames[pose],
+            {static_cast<std::uint32_t>(steps.size()), static_cast<std::uint32_t>(terms.size())}};
+  }
 };
 
 // Units of one count: mm or deg, mm/s..., 1; as the compiler takes them.
@@ -134,6 +144,16 @@ void make_poses(Bench& b) {
     b.real_channels.push_back(std::move(real));
   }
   b.compensator->reset();
+  const Equation& e = b.program().equation;
+  const DenseSize size = dense_size(e);
+  b.steps.resize(size.steps);
+  b.terms.resize(size.terms);
+  b.frames.resize(kPoses);
+  for (std::size_t i = 0; i < kPoses; ++i) {
+    if (!make_dense(e, b.dense(i))) std::fprintf(stderr, "no dense form\n"), std::exit(1);
+    for (std::uint32_t r = e.first_channel(); r < inputs; ++r) b.frames[i].registers[r] = b.registers[i][r];
+    b.frames[i].lags = b.lags;
+  }
 }
 
 void print_equation(Bench& b, std::size_t i, std::int32_t* deviation) {
@@ -152,7 +172,20 @@ int check(Bench& b, const std::string& directory) {
   double worst_nm = 0;
   bool known = false;
   for (std::size_t i = 0; i < kPoses; ++i) {
+    LagState lags_before[kMaxLags];
+    std::copy(lags, lags + kMaxLags, lags_before);
     run_equation(b.program().equation, b.registers[i].data(), lags, i == 0);
+    LagState dense_lags[kMaxLags] = {};
+    std::copy(lags_before, lags_before + kMaxLags, dense_lags);
+    b.frames[i].lags = dense_lags;
+    b.frames[i].starting = i == 0;
+    run_dense(b.dense(i));
+    b.frames[i].lags = b.lags;
+    b.frames[i].starting = false;
+    const auto same = [](std::int32_t executed, Word dense) { return executed == dense; };
+    if (!std::equal(b.registers[i].begin(), b.registers[i].begin() + b.program().equation.register_count(),
+                    b.frames[i].registers, same))
+      return std::fprintf(stderr, "dense and executed form differ at pose %zu\n", i), 1;
     std::int32_t printed[kMaxAxes] = {};
     double flat[kMaxAxes] = {};
     print_equation(b, i, printed);
@@ -215,6 +248,7 @@ std::vector<Case> cases_of(Bench& b) {
   over_poses("executed", [&b](std::size_t i) {
     run_equation(b.program().equation, b.registers[i].data(), b.lags, false);
   });
+  over_poses("dense", [&b](std::size_t i) { run_dense(b.dense(i)); });
   over_poses("printed", [&b](std::size_t i) {
     std::int32_t deviation[kMaxAxes];
     generated::equation(b.registers[i].data() + b.program().equation.first_channel(), b.lags, false,
