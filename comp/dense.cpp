@@ -4,17 +4,34 @@
 #include "comp/fixed.h"
 #include "comp/sine.h"
 
-// Each step ends with a jump to the function of the next step. A compiler that does not promise the jump (no
-// optimisation) gets a loop over the steps.
-#if defined(__clang__)
-#define VERNIER_NEXT(step, frame, sum) [[clang::musttail]] return (step)[1].run((step) + 1, frame, sum)
-#define VERNIER_JUMPS 1
-#elif defined(__GNUC__) && defined(__OPTIMIZE__)
-#define VERNIER_NEXT(step, frame, sum) return (step)[1].run((step) + 1, frame, sum)
+// Each step ends with a jump to the function of the next step, so that a step needs no loop, no call and no
+// return. A compiler that does not promise the jump (no optimisation) gets a loop over the steps.
+// VERNIER_HIDDEN hides from the compiler how a value was computed. A hidden address of the next step gives one
+// addition and the jump through memory.
+#if defined(__GNUC__) && (defined(__clang__) || defined(__OPTIMIZE__))
 #define VERNIER_JUMPS 1
 #else
-#define VERNIER_NEXT(step, frame, sum) return sum
 #define VERNIER_JUMPS 0
+#endif
+#if defined(__GNUC__)
+#define VERNIER_HIDDEN(value) __asm__("" : "+r"(value))
+#else
+#define VERNIER_HIDDEN(value) static_cast<void>(value)
+#endif
+#if !VERNIER_JUMPS
+#define VERNIER_NEXT(at, count, frame, sum) \
+  (frame).next = (at) + (count);            \
+  return sum
+#elif defined(__clang__)
+#define VERNIER_NEXT(at, count, frame, sum) \
+  (at) += (count);                          \
+  VERNIER_HIDDEN(at);                     \
+  [[clang::musttail]] return (at)->run(at, frame, sum)
+#else
+#define VERNIER_NEXT(at, count, frame, sum) \
+  (at) += (count);                          \
+  VERNIER_HIDDEN(at);                     \
+  return (at)->run(at, frame, sum)
 #endif
 
 namespace vernier {
@@ -27,6 +44,9 @@ constexpr std::uint32_t kKindCount = 5;
 
 /// Largest number of products of one step.
 constexpr std::uint32_t most_of(Kind kind) noexcept { return kind == Kind::kScaled ? 8 : 4; }
+
+// Cells of a step.
+constexpr std::uint32_t kPlace = 1, kSource = 2, kTerms = 3;
 
 // A register of a frame contains a value that fits int32.
 inline std::int32_t narrow_of(const DenseFrame& frame, std::uint16_t index) noexcept {
@@ -45,51 +65,91 @@ inline std::uint64_t added(const DenseTerm& t, const Word* r, std::uint64_t sum)
 }
 
 template <Kind kKind, std::uint32_t kCount>
-inline std::uint64_t all_added(const DenseTerm* t, const Word* r, std::uint64_t sum) noexcept {
-  sum = added<kKind>(*t, r, sum);
+inline std::uint64_t all_added(const DenseCell* t, const Word* r, std::uint64_t sum) noexcept {
+  sum = added<kKind>(t->term, r, sum);
   if constexpr (kCount > 1) return all_added<kKind, kCount - 1>(t + 1, r, sum);
   return sum;
 }
 
+template <Kind kFirst, Kind... kMore>
+inline std::uint64_t each_added(const DenseCell* t, const Word* r, std::uint64_t sum) noexcept {
+  sum = added<kFirst>(t->term, r, sum);
+  if constexpr (sizeof...(kMore) > 0) return each_added<kMore...>(t + 1, r, sum);
+  return sum;
+}
+
+/// Shifts the sum and writes the result.
+inline std::int64_t finished(const DenseCell* at, DenseFrame& f, std::uint64_t sum) noexcept {
+  const std::int64_t result = static_cast<std::int64_t>(sum) >> at[kPlace].place.shift;
+  f.registers[at[kPlace].place.result] = word_of(result);
+  return result;
+}
+
+/// Part of a sum: products of one kind.
 template <Kind kKind, std::uint32_t kCount, bool kFirst, bool kLast>
-std::int64_t run_sum(const DenseStep* s, DenseFrame& f, std::int64_t sum) noexcept {
-  const std::int64_t before = kFirst ? s->start : sum;
-  const auto after = static_cast<std::int64_t>(
-      all_added<kKind, kCount>(s->source.terms, f.registers, static_cast<std::uint64_t>(before)));
-  if constexpr (kLast) f.registers[s->result] = word_of(after >> s->shift);
-  VERNIER_NEXT(s, f, after);
+std::int64_t run_part(const DenseCell* at, DenseFrame& f, std::int64_t sum) noexcept {
+  const std::int64_t before = kFirst ? at[kSource].start : sum;
+  const std::uint64_t after =
+      all_added<kKind, kCount>(at + kTerms, f.registers, static_cast<std::uint64_t>(before));
+  sum = kLast ? finished(at, f, after) : static_cast<std::int64_t>(after);
+  VERNIER_NEXT(at, kTerms + kCount, f, sum);
+}
+
+/// A whole sum of few products.
+template <Kind... kKinds>
+std::int64_t run_whole(const DenseCell* at, DenseFrame& f, std::int64_t sum) noexcept {
+  sum = finished(
+      at, f, each_added<kKinds...>(at + kTerms, f.registers, static_cast<std::uint64_t>(at[kSource].start)));
+  VERNIER_NEXT(at, kTerms + sizeof...(kKinds), f, sum);
+}
+
+/// Largest number of products in a sum that one step computes for every combination of kinds.
+constexpr std::uint32_t kMostWhole = 3;
+
+// The kinds increase: each combination of kinds has one function.
+template <Kind kLeast, Kind... kKinds>
+DenseRun whole_of(const Kind* kinds, std::uint32_t count) noexcept {
+  if constexpr (sizeof...(kKinds) > 0)
+    if (count == sizeof...(kKinds)) return run_whole<kKinds...>;
+  if constexpr (sizeof...(kKinds) < kMostWhole) {
+    if (kinds[sizeof...(kKinds)] == kLeast) return whole_of<kLeast, kKinds..., kLeast>(kinds, count);
+    if constexpr (kLeast != Kind::kSubtractedShifted)
+      return whole_of<static_cast<Kind>(static_cast<int>(kLeast) + 1), kKinds...>(kinds, count);
+  }
+  return nullptr;
 }
 
 template <Kind kKind, std::uint32_t kCount = most_of(kKind)>
-DenseRun sum_of(std::uint32_t count, bool first, bool last) noexcept {
+DenseRun part_of(std::uint32_t count, bool first, bool last) noexcept {
   if constexpr (kCount > 1)
-    if (count < kCount) return sum_of<kKind, kCount - 1>(count, first, last);
-  if (first) return last ? run_sum<kKind, kCount, true, true> : run_sum<kKind, kCount, true, false>;
-  return last ? run_sum<kKind, kCount, false, true> : run_sum<kKind, kCount, false, false>;
+    if (count < kCount) return part_of<kKind, kCount - 1>(count, first, last);
+  if (first) return last ? run_part<kKind, kCount, true, true> : run_part<kKind, kCount, true, false>;
+  return last ? run_part<kKind, kCount, false, true> : run_part<kKind, kCount, false, false>;
 }
 
-DenseRun sum_of(Kind kind, std::uint32_t count, bool first, bool last) noexcept {
+DenseRun part_of(Kind kind, std::uint32_t count, bool first, bool last) noexcept {
   switch (kind) {
     case Kind::kScaled:
-      return sum_of<Kind::kScaled>(count, first, last);
+      return part_of<Kind::kScaled>(count, first, last);
     case Kind::kAdded:
-      return sum_of<Kind::kAdded>(count, first, last);
+      return part_of<Kind::kAdded>(count, first, last);
     case Kind::kSubtracted:
-      return sum_of<Kind::kSubtracted>(count, first, last);
+      return part_of<Kind::kSubtracted>(count, first, last);
     case Kind::kAddedShifted:
-      return sum_of<Kind::kAddedShifted>(count, first, last);
+      return part_of<Kind::kAddedShifted>(count, first, last);
     default:
-      return sum_of<Kind::kSubtractedShifted>(count, first, last);
+      return part_of<Kind::kSubtractedShifted>(count, first, last);
   }
 }
 
 template <OpCode kOp>
-inline Word value_of(const DenseStep* s, const DenseFrame& f) noexcept {
-  const Word a = f.registers[s->a];
+inline Word value_of(const DenseCell* at, const DenseFrame& f) noexcept {
+  const DensePlace& place = at[kPlace].place;
+  const Word a = f.registers[place.a];
   if constexpr (kOp == OpCode::kAbs) return magnitude(a);
   if constexpr (kOp == OpCode::kSign) return sign_of(a);
-  if constexpr (kOp == OpCode::kWrap) return wrapped(*s->source.wrap, static_cast<std::int32_t>(a));
-  const Word b = f.registers[s->b];
+  if constexpr (kOp == OpCode::kWrap) return wrapped(*at[kSource].wrap, static_cast<std::int32_t>(a));
+  const Word b = f.registers[place.b];
   if constexpr (kOp == OpCode::kMin) return lower(a, b);
   if constexpr (kOp == OpCode::kMax) return higher(a, b);
   if constexpr (kOp == OpCode::kEqual) return a == b ? 1 : 0;
@@ -97,47 +157,82 @@ inline Word value_of(const DenseStep* s, const DenseFrame& f) noexcept {
 }
 
 template <OpCode kOp>
-std::int64_t run_value(const DenseStep* s, DenseFrame& f, std::int64_t sum) noexcept {
-  f.registers[s->result] = value_of<kOp>(s, f);
-  VERNIER_NEXT(s, f, sum);
+std::int64_t run_value(const DenseCell* at, DenseFrame& f, std::int64_t sum) noexcept {
+  f.registers[at[kPlace].place.result] = value_of<kOp>(at, f);
+  VERNIER_NEXT(at, kTerms, f, sum);
 }
 
-std::int64_t run_sine(const DenseStep* s, DenseFrame& f, std::int64_t) noexcept {
-  const SineCosine both =
-      sine_cosine(turns_of(narrow_of(f, s->a), static_cast<std::int32_t>(s->start), s->shift));
-  Word* const out = f.registers + s->result;
+/// Largest of two values, then the smallest of the result and a third value (kMax, then kMin).
+std::int64_t run_clamp(const DenseCell* at, DenseFrame& f, std::int64_t) noexcept {
+  const DensePlace& place = at[kPlace].place;
+  const Word above = higher(f.registers[place.a], f.registers[place.b]);
+  const Word within = lower(above, f.registers[at[kSource].term.a]);
+  Word* const out = f.registers + place.result;
+  out[0] = above;
+  out[1] = within;
+  VERNIER_NEXT(at, kTerms, f, 0);
+}
+
+std::int64_t run_sine(const DenseCell* at, DenseFrame& f, std::int64_t) noexcept {
+  const DensePlace& place = at[kPlace].place;
+  const SineCosine both = sine_cosine(
+      turns_of(narrow_of(f, place.a), static_cast<std::int32_t>(at[kSource].start), place.shift));
+  Word* const out = f.registers + place.result;
   out[0] = both.sine;
   out[1] = both.cosine;
-  VERNIER_NEXT(s, f, 0);
+  VERNIER_NEXT(at, kTerms, f, 0);
 }
 
-std::int64_t run_lag(const DenseStep* s, DenseFrame& f, std::int64_t) noexcept {
-  const std::int32_t u = narrow_of(f, s->a);
-  LagState& state = f.lags[s->b];
+std::int64_t run_lag(const DenseCell* at, DenseFrame& f, std::int64_t) noexcept {
+  const DensePlace& place = at[kPlace].place;
+  const std::int32_t u = narrow_of(f, place.a);
+  LagState& state = f.lags[place.b];
   if (f.starting) start_lag(state, u);
-  f.registers[s->result] = step_lag(state, u, static_cast<std::int32_t>(s->start), s->shift);
-  VERNIER_NEXT(s, f, 0);
+  f.registers[place.result] = step_lag(state, u, static_cast<std::int32_t>(at[kSource].start), place.shift);
+  VERNIER_NEXT(at, kTerms, f, 0);
 }
 
-std::int64_t run_any_table(const DenseStep* s, DenseFrame& f, std::int64_t) noexcept {
-  look_up(*s->source.table, narrow_of(f, s->a), f.registers + s->result);
-  VERNIER_NEXT(s, f, 0);
+std::int64_t run_any_table(const DenseCell* at, DenseFrame& f, std::int64_t) noexcept {
+  const DensePlace& place = at[kPlace].place;
+  look_up(*at[kSource].table, narrow_of(f, place.a), f.registers + place.result);
+  VERNIER_NEXT(at, kTerms, f, 0);
+}
+
+// Columns one after another: four columns in vectors of 128 bits need more instructions, because SSE2 has no
+// signed product and no signed shift of 64 bits.
+template <unsigned kDegree, unsigned kColumns>
+inline void columns(const std::int32_t* c, std::int64_t fraction, Word* out) noexcept {
+  Word value = kDegree == 1 ? linear_between(c, fraction) : cubic_between(c, fraction);
+  VERNIER_HIDDEN(value);
+  *out = value;
+  if constexpr (kColumns > 1) columns<kDegree, kColumns - 1>(c + kDegree + 1, fraction, out + 1);
+}
+
+template <unsigned kDegree, unsigned kColumns, bool kGrid>
+std::int64_t run_table(const DenseCell* at, DenseFrame& f, std::int64_t) noexcept {
+  const DensePlace& place = at[kPlace].place;
+  const ErrorTable& table = *at[kSource].table;
+  const std::int32_t held = higher(narrow_of(f, place.a), table.records[0]);
+  const std::uint32_t piece = kGrid ? grid_piece(table, held) : searched_piece(table, held);
+  const std::int32_t* const record =
+      table.records + std::size_t{piece} * (kSegmentWords + kColumns * (kDegree + 1));
+  columns<kDegree, kColumns>(record + kSegmentWords, fraction_in(segment_at(record), held),
+                             f.registers + place.result);
+  VERNIER_NEXT(at, kTerms, f, 0);
 }
 
 template <unsigned kDegree, unsigned kColumns>
-std::int64_t run_table(const DenseStep* s, DenseFrame& f, std::int64_t) noexcept {
-  look_up<kDegree, kColumns>(*s->source.table, narrow_of(f, s->a), f.registers + s->result);
-  VERNIER_NEXT(s, f, 0);
+DenseRun table_of(const ErrorTable& table) noexcept {
+  return table.grid_multiplier != 0 ? run_table<kDegree, kColumns, true> : run_table<kDegree, kColumns, false>;
 }
-
 DenseRun table_of(const ErrorTable& table) noexcept {
   const bool linear = table.degree == 1;
-  if (table.columns == 6) return linear ? run_table<1, 6> : run_table<3, 6>;
-  if (table.columns == 1) return linear ? run_table<1, 1> : run_table<3, 1>;
+  if (table.columns == 6) return linear ? table_of<1, 6>(table) : table_of<3, 6>(table);
+  if (table.columns == 1) return linear ? table_of<1, 1>(table) : table_of<3, 1>(table);
   return run_any_table;
 }
 
-std::int64_t run_end(const DenseStep*, DenseFrame&, std::int64_t sum) noexcept { return sum; }
+std::int64_t run_end(const DenseCell*, DenseFrame&, std::int64_t sum) noexcept { return sum; }
 
 DenseRun value_of(OpCode op) noexcept {
   switch (op) {
@@ -158,131 +253,161 @@ DenseRun value_of(OpCode op) noexcept {
   }
 }
 
-/// Writes steps and terms, or only counts them if there is no memory.
+/// Writes the cells, or only counts them if there is no memory.
 class Writer {
  public:
-  Writer(const Equation& equation, const DenseMemory& memory) noexcept : e_(equation), memory_(memory) {}
+  Writer(const Equation& equation, DenseCell* cells) noexcept : e_(equation), cells_(cells) {}
 
-  DenseSize write() noexcept {
+  /// Returns the number of cells.
+  std::uint32_t write() noexcept {
     std::uint32_t result = e_.first_result();
-    for (const Instruction& step : e_.instructions) {
-      write(step, static_cast<std::uint16_t>(result));
-      result += results_of(step, e_.tables);
+    for (std::uint32_t i = 0; i < e_.instructions.size; ++i) {
+      const Instruction& step = e_.instructions[i];
+      const auto place = static_cast<std::uint16_t>(result);
+      if (i + 1 < e_.instructions.size && is_clamp(step, e_.instructions[i + 1], place)) {
+        write_clamp(step, e_.instructions[++i], place);
+        result += 2;
+      } else {
+        write(step, place);
+        result += results_of(step, e_.tables);
+      }
     }
-    add({run_end, {nullptr}, 0, 0, 0, 0, 0});
+    add([](DenseCell& cell) { cell.run = run_end; });
     return used_;
   }
 
  private:
-  void add(const DenseStep& step) noexcept {
-    if (memory_.steps != nullptr) memory_.steps[used_.steps] = step;
-    ++used_.steps;
+  /// Kind and dense form of one product.
+  struct Product {
+    Kind kind;
+    DenseTerm term;
+  };
+
+  template <class Set>
+  void add(Set set) noexcept {
+    if (cells_ != nullptr) set(cells_[used_]);
+    ++used_;
   }
-  void add(const DenseTerm& term) noexcept {
-    if (memory_.terms != nullptr) memory_.terms[used_.terms] = term;
-    ++used_.terms;
+  void add_head(DenseRun run, const DensePlace& place) noexcept {
+    add([&](DenseCell& cell) { cell.run = run; });
+    add([&](DenseCell& cell) { cell.place = place; });
   }
-  bool is_constant(std::uint16_t index) const noexcept { return index < e_.constants.size; }
+  void add_start(std::int64_t start) noexcept {
+    add([&](DenseCell& cell) { cell.start = start; });
+  }
+  void add_term(const DenseTerm& term) noexcept {
+    add([&](DenseCell& cell) { cell.term = term; });
+  }
+
+  // kMin of the result of kMax; one of the operands of kMin is this result.
+  static bool is_clamp(const Instruction& s, const Instruction& next, std::uint16_t result) noexcept {
+    return s.op == OpCode::kMax && next.op == OpCode::kMin && (next.a == result || next.b == result);
+  }
+  void write_clamp(const Instruction& s, const Instruction& next, std::uint16_t result) noexcept {
+    add_head(run_clamp, {result, s.a, s.b, 0});
+    add_term({0, next.a == result ? next.b : next.a, 0});
+  }
 
   void write(const Instruction& s, std::uint16_t result) noexcept {
-    DenseStep step{nullptr, {nullptr}, s.k, result, s.a, s.b, s.shift};
+    const DensePlace place{result, s.a, s.b, s.shift};
     switch (s.op) {
       case OpCode::kLinear:
-        return write_linear(s, result);
+        return write_linear(s, place);
       case OpCode::kMultiply: {
         const ProductTerm both{s.a, s.b, 0};
-        return write_sum(&both, 1, 1, 0, s.shift, result);
+        return write_sum(&both, 1, 1, half_of(s.shift), place);
       }
       case OpCode::kDot:
         return write_sum(e_.terms.data + s.l, s.a, std::uint32_t{s.a} + s.b,
-                         std::int64_t{s.k} * (std::int64_t{1} << s.c), s.shift, result);
+                         std::int64_t{s.k} * (std::int64_t{1} << s.c) + half_of(s.shift), place);
       case OpCode::kLookUp:
-        step.source.table = &e_.tables[s.b];
-        step.run = table_of(e_.tables[s.b]);
-        break;
-      case OpCode::kSineCosine:
-        step.run = run_sine;
-        break;
-      case OpCode::kLag:
-        step.run = run_lag;
-        break;
+        add_head(table_of(e_.tables[s.b]), place);
+        return add([&](DenseCell& cell) { cell.table = &e_.tables[s.b]; });
       case OpCode::kWrap:
-        step.source.wrap = &e_.wraps[s.b];
-        step.run = value_of(s.op);
-        break;
+        add_head(value_of(s.op), place);
+        return add([&](DenseCell& cell) { cell.wrap = &e_.wraps[s.b]; });
+      case OpCode::kSineCosine:
+        add_head(run_sine, place);
+        return add_start(s.k);
+      case OpCode::kLag:
+        add_head(run_lag, place);
+        return add_start(s.k);
       default:
-        step.run = value_of(s.op);
+        add_head(value_of(s.op), place);
+        add_start(0);
     }
-    add(step);
   }
 
-  const DenseTerm* next_term() const noexcept {
-    return memory_.terms == nullptr ? nullptr : memory_.terms + used_.terms;
-  }
-
-  void write_linear(const Instruction& s, std::uint16_t result) noexcept {
-    const std::uint32_t count = s.l == 0 ? 1 : 2;
-    add({sum_of(Kind::kScaled, count, true, true), {next_term()}, half_of(s.shift), result, 0, 0, s.shift});
-    add(DenseTerm{s.k, s.a, 0});
-    if (count == 2) add(DenseTerm{s.l, s.b, 0});
+  void write_linear(const Instruction& s, const DensePlace& place) noexcept {
+    add_head(s.l == 0 ? run_whole<Kind::kScaled> : run_whole<Kind::kScaled, Kind::kScaled>, place);
+    add_start(half_of(s.shift));
+    add_term({s.k, s.a, 0});
+    if (s.l != 0) add_term({s.l, s.b, 0});
   }
 
   static std::int64_t half_of(unsigned shift) noexcept { return (std::int64_t{1} << shift) >> 1; }
 
-  /// Kind and dense form of one product.
-  struct Known {
-    Kind kind;
-    DenseTerm term;
-  };
-  Known known(const ProductTerm& t, bool added) const noexcept {
+  Product product_of(const ProductTerm& t, bool added) const noexcept {
     if (t.shift != 0)
       return {added ? Kind::kAddedShifted : Kind::kSubtractedShifted, {t.shift, t.a, t.b}};
-    const bool first = is_constant(t.a);
-    if (first || is_constant(t.b)) {
+    const bool first = t.a < e_.constants.size;
+    if (first || t.b < e_.constants.size) {
       const std::int32_t value = e_.constants[first ? t.a : t.b];
       // The negative value of INT32_MIN is no int32.
-      if (added || value != INT32_MIN) return {Kind::kScaled, {added ? value : -value, first ? t.b : t.a, 0}};
+      if (added || value != INT32_MIN)
+        return {Kind::kScaled, {added ? value : -value, first ? t.b : t.a, 0}};
     }
     return {added ? Kind::kAdded : Kind::kSubtracted, {0, t.a, t.b}};
   }
 
-  void write_sum(const ProductTerm* terms, std::uint32_t plus, std::uint32_t count, std::int64_t constant,
-                 std::uint8_t shift, std::uint16_t result) noexcept {
+  // Products of one kind are beside each other: in one step, or in steps of at most most_of(kind) products.
+  void write_sum(const ProductTerm* terms, std::uint32_t plus, std::uint32_t count, std::int64_t start,
+                 const DensePlace& place) noexcept {
     std::uint32_t left[kKindCount] = {};
-    for (std::uint32_t i = 0; i < count; ++i) ++left[static_cast<std::uint32_t>(known(terms[i], i < plus).kind)];
+    for (std::uint32_t i = 0; i < count; ++i)
+      ++left[static_cast<std::uint32_t>(product_of(terms[i], i < plus).kind)];
+    if (count <= kMostWhole) write_whole(left, count, start, place);
     std::uint32_t open = count;
     for (std::uint32_t k = 0; k < kKindCount; ++k) {
       const Kind kind = static_cast<Kind>(k);
-      std::uint32_t room = 0;
+      std::uint32_t room = 0;  // products that the step still takes
       for (std::uint32_t i = 0; i < count; ++i) {
-        const Known one = known(terms[i], i < plus);
+        const Product one = product_of(terms[i], i < plus);
         if (one.kind != kind) continue;
-        if (room == 0) {
+        if (room == 0 && count > kMostWhole) {
           room = lower(left[k], most_of(kind));
+          add_head(part_of(kind, room, open == count, open == room), place);
+          add_start(start);
           left[k] -= room;
-          add({sum_of(kind, room, open == count, open == room), {next_term()}, constant + half_of(shift),
-               result, 0, 0, shift});
           open -= room;
         }
-        add(one.term);
+        add_term(one.term);
         --room;
       }
     }
   }
+  void write_whole(const std::uint32_t* counts, std::uint32_t count, std::int64_t start,
+                   const DensePlace& place) noexcept {
+    Kind kinds[kMostWhole];
+    std::uint32_t n = 0;
+    for (std::uint32_t k = 0; k < kKindCount; ++k)
+      for (std::uint32_t i = 0; i < counts[k]; ++i) kinds[n++] = static_cast<Kind>(k);
+    add_head(whole_of<Kind::kScaled>(kinds, count), place);
+    add_start(start);
+  }
 
   const Equation& e_;
-  const DenseMemory& memory_;
-  DenseSize used_;
+  DenseCell* cells_;
+  std::uint32_t used_ = 0;
 };
 
 }  // namespace
 
-DenseSize dense_size(const Equation& equation) noexcept { return Writer(equation, {}).write(); }
+std::uint32_t dense_size(const Equation& equation) noexcept { return Writer(equation, nullptr).write(); }
 
 bool make_dense(const Equation& equation, const DenseMemory& memory) noexcept {
-  const DenseSize need = dense_size(equation);
-  if (need.steps > memory.size.steps || need.terms > memory.size.terms) return false;
-  Writer(equation, memory).write();
+  if (dense_size(equation) > memory.size) return false;
+  Writer(equation, memory.cells).write();
   for (std::uint32_t i = 0; i < equation.constants.size; ++i)
     memory.frame->registers[i] = equation.constants[i];
   return true;
@@ -290,10 +415,11 @@ bool make_dense(const Equation& equation, const DenseMemory& memory) noexcept {
 
 void run_dense(const DenseMemory& memory) noexcept {
 #if VERNIER_JUMPS
-  memory.steps->run(memory.steps, *memory.frame, 0);
+  memory.cells->run(memory.cells, *memory.frame, 0);
 #else
   std::int64_t sum = 0;
-  for (const DenseStep* s = memory.steps; s->run != run_end; ++s) sum = s->run(s, *memory.frame, sum);
+  DenseFrame& frame = *memory.frame;
+  for (frame.next = memory.cells; frame.next->run != run_end;) sum = frame.next->run(frame.next, frame, sum);
 #endif
 }
 

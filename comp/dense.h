@@ -18,43 +18,42 @@ struct DenseFrame {
   Word registers[kMaxRegisters] = {};
   LagState* lags = nullptr;
   bool starting = false;
+  const union DenseCell* next = nullptr;  // next step, if the steps are executed by a loop
 };
 
-struct DenseStep;
-/// Executes one step and all steps after the step. `sum`: the sum of products so far. The result is the last
-/// sum. Real-time safe.
-using DenseRun = std::int64_t (*)(const DenseStep* step, DenseFrame& frame, std::int64_t sum) noexcept;
+union DenseCell;
+/// Executes one step of a dense program and all steps after the step. `at`: first cell of the step; `sum`: the
+/// sum of products so far. The result is the sum after the last step. Real-time safe.
+using DenseRun = std::int64_t (*)(const DenseCell* at, DenseFrame& frame, std::int64_t sum) noexcept;
 
-/// One step of a dense program: the function that executes the step, and its operands.
-struct DenseStep {
-  union Source {
-    const DenseTerm* terms;
-    const ErrorTable* table;
-    const Wrap* wrap;
-  };
-  DenseRun run = nullptr;
-  Source source{nullptr};
-  std::int64_t start = 0;  // start of a sum with half of its last bit, or the factor k of the instruction
-  std::uint16_t result = 0, a = 0, b = 0;
-  std::uint8_t shift = 0;
+/// Registers and shift of one step. The step writes its results to the registers from `result` on.
+struct DensePlace {
+  std::uint16_t result, a, b;
+  std::uint8_t shift;
 };
 
-/// Number of steps and terms of the dense form of an equation.
-struct DenseSize {
-  std::uint32_t steps = 0, terms = 0;
+/// One cell of a dense program. A step has three cells and one cell for each product: the function that
+/// executes the step, its registers, its source, the terms of its products.
+union DenseCell {
+  std::int64_t start = 0;  // source: start of a sum with half of its last bit, or the factor k
+  const ErrorTable* table;  // source
+  const Wrap* wrap;         // source
+  DenseRun run;
+  DensePlace place;
+  DenseTerm term;
 };
 
-/// Memory for the dense form of an equation: arrays of `size.steps` steps and `size.terms` terms, and the
-/// frame. The memory belongs to the caller and must exist longer than its user.
+/// Memory for the dense form of an equation. The memory belongs to the caller and must exist longer than its
+/// user.
 struct DenseMemory {
-  DenseStep* steps = nullptr;
-  DenseTerm* terms = nullptr;
+  DenseCell* cells = nullptr;
+  std::uint32_t size = 0;  // number of cells
   DenseFrame* frame = nullptr;
-  DenseSize size;
 };
 
-/// Returns the memory that make_dense() needs for a VERIFIED equation (comp/verify.h). Not real-time safe.
-DenseSize dense_size(const Equation& equation) noexcept;
+/// Returns the number of cells that make_dense() needs for a VERIFIED equation (comp/verify.h). Not real-time
+/// safe.
+std::uint32_t dense_size(const Equation& equation) noexcept;
 
 /// Converts a VERIFIED equation to its dense form. The dense form computes the same registers as
 /// run_equation(), to the last bit, with fewer instructions: operands are decoded, constants are contained in

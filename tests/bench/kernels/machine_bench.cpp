@@ -45,16 +45,12 @@ struct Bench {
   std::unique_ptr<Compensator> compensator;
   LagState lags[kMaxLags] = {};
   std::vector<Chain> chains;
-  std::vector<DenseStep> steps;
-  std::vector<DenseTerm> terms;
+  std::vector<DenseCell> cells;
   std::vector<DenseFrame> frames;  // per pose, constants and channels in place
 
   const Program& program() const { return view.program(); }
   DenseMemory dense(std::size_t pose) {
-    return {steps.data(),
-            terms.data(),
-            &frames[pose],
-            {static_cast<std::uint32_t>(steps.size()), static_cast<std::uint32_t>(terms.size())}};
+    return {cells.data(), static_cast<std::uint32_t>(cells.size()), &frames[pose]};
   }
 };
 
@@ -145,9 +141,7 @@ void make_poses(Bench& b) {
   }
   b.compensator->reset();
   const Equation& e = b.program().equation;
-  const DenseSize size = dense_size(e);
-  b.steps.resize(size.steps);
-  b.terms.resize(size.terms);
+  b.cells.resize(dense_size(e));
   b.frames.resize(kPoses);
   for (std::size_t i = 0; i < kPoses; ++i) {
     if (!make_dense(e, b.dense(i))) std::fprintf(stderr, "no dense form\n"), std::exit(1);
