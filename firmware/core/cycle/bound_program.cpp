@@ -29,6 +29,10 @@ BoundProgram::BoundProgram(const ImageView& view) noexcept
   const PrintedModel printed = printed_model();
   if (printed.equation != nullptr && printed.fingerprint == view.header().fingerprint)
     compensator.use_printed(printed.equation);
+  const std::uint32_t size = dense_size(program.equation);
+  cells = std::make_unique<DenseCell[]>(size);
+  frame = std::make_unique<DenseFrame>();
+  compensator.use_dense({cells.get(), size, frame.get()});
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <memory>
 
 #include "comp/compensator.h"
 #include "firmware/core/cycle/wiring.h"
@@ -27,6 +28,8 @@ struct BoundProgram {
   bool empty() const noexcept { return program.axis_count == 0; }
 
   Program program;
+  std::unique_ptr<DenseCell[]> cells;  // dense form of the program, which the compensator executes
+  std::unique_ptr<DenseFrame> frame;
   Compensator compensator;
   ShareProgram shares;                   // program for the shares of the effects, for a live display
   View<ShareName> share_names;           // one name for each share
