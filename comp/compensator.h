@@ -176,17 +176,17 @@ class Compensator {
   void use_printed(PrintedEquation equation) noexcept { printed_ = equation; }
   bool printed() const noexcept { return printed_ != nullptr; }
 
-  /// After this call, step() executes the dense form of the program (comp/dense.h) instead of interpreting the
-  /// program. The dense form and the interpreted program give identical corrections, to the last bit; the
-  /// dense form needs a half of the instructions or less. `memory`: dense_size(program.equation) cells and one
-  /// frame, which no other compensator uses. Returns false if the memory is too small: the program is
+  /// After this call, step() executes the dense form of the program (comp/dense.h) instead of interpreting
+  /// the program. The dense form and the interpreted program give identical corrections, to the last bit; the
+  /// dense form needs a half of the instructions or less. `memory`: dense_size(program.equation) cells and
+  /// one frame, which no other compensator uses. Returns false if the memory is too small: the program is
   /// interpreted as before. Not real-time safe.
   bool use_dense(const DenseMemory& memory) noexcept;
   bool dense() const noexcept { return dense_.cells != nullptr; }
 
   /// Returns the value of register i after the last step, for tests and for the inspection of intermediate
-  /// values. In the printed and in the dense form only the channels and the outputs have values. Not real-time
-  /// safe.
+  /// values. In the printed and in the dense form only the channels and the outputs have values. Not
+  /// real-time safe.
   std::int32_t register_value(std::uint32_t i) const noexcept { return registers_[i]; }
 
  private:

@@ -6,9 +6,11 @@
 
 // Each step ends with a jump to the function of the next step, so that a step needs no loop, no call and no
 // return. A compiler that does not promise the jump (no optimisation) gets a loop over the steps.
-// VERNIER_HIDDEN hides from the compiler how a value was computed. A hidden address of the next step gives one
-// addition and the jump through memory.
-#if defined(__GNUC__) && (defined(__clang__) || defined(__OPTIMIZE__))
+// VERNIER_HIDDEN hides from the compiler how a value was computed. A hidden address of the next step gives
+// one addition and the jump through memory.
+#ifdef VERNIER_LOOPS  // for the test of the loop
+#define VERNIER_JUMPS 0
+#elif defined(__GNUC__) && (defined(__clang__) || defined(__OPTIMIZE__))
 #define VERNIER_JUMPS 1
 #else
 #define VERNIER_JUMPS 0
@@ -25,12 +27,12 @@
 #elif defined(__clang__)
 #define VERNIER_NEXT(at, count, frame, sum) \
   (at) += (count);                          \
-  VERNIER_HIDDEN(at);                     \
+  VERNIER_HIDDEN(at);                       \
   [[clang::musttail]] return (at)->run(at, frame, sum)
 #else
 #define VERNIER_NEXT(at, count, frame, sum) \
   (at) += (count);                          \
-  VERNIER_HIDDEN(at);                     \
+  VERNIER_HIDDEN(at);                       \
   return (at)->run(at, frame, sum)
 #endif
 
@@ -40,7 +42,8 @@ namespace {
 /// Kinds of products in a sum. A product without shift and with a constant factor needs the fewest
 /// instructions.
 enum class Kind : std::uint8_t { kScaled, kAdded, kSubtracted, kAddedShifted, kSubtractedShifted };
-constexpr std::uint32_t kKindCount = 5;
+constexpr Kind kLastKind = Kind::kSubtractedShifted;
+constexpr std::uint32_t kKindCount = static_cast<std::uint32_t>(kLastKind) + 1;
 
 /// Largest number of products of one step.
 constexpr std::uint32_t most_of(Kind kind) noexcept { return kind == Kind::kScaled ? 8 : 4; }
@@ -109,14 +112,20 @@ constexpr std::uint32_t kMostWhole = 3;
 // The kinds increase: each combination of kinds has one function.
 template <Kind kLeast, Kind... kKinds>
 DenseRun whole_of(const Kind* kinds, std::uint32_t count) noexcept {
-  if constexpr (sizeof...(kKinds) > 0)
-    if (count == sizeof...(kKinds)) return run_whole<kKinds...>;
-  if constexpr (sizeof...(kKinds) < kMostWhole) {
-    if (kinds[sizeof...(kKinds)] == kLeast) return whole_of<kLeast, kKinds..., kLeast>(kinds, count);
-    if constexpr (kLeast != Kind::kSubtractedShifted)
-      return whole_of<static_cast<Kind>(static_cast<int>(kLeast) + 1), kKinds...>(kinds, count);
+  constexpr std::uint32_t kKnown = sizeof...(kKinds);
+  if constexpr (kKnown == kMostWhole) {
+    return run_whole<kKinds...>;
+  } else {
+    if constexpr (kKnown > 0)
+      if (count == kKnown) return run_whole<kKinds...>;
+    if constexpr (kLeast == kLastKind) {
+      return whole_of<kLeast, kKinds..., kLeast>(kinds, count);
+    } else {
+      constexpr Kind kNext = static_cast<Kind>(static_cast<std::uint8_t>(kLeast) + 1);
+      return kinds[kKnown] == kLeast ? whole_of<kLeast, kKinds..., kLeast>(kinds, count)
+                                     : whole_of<kNext, kKinds...>(kinds, count);
+    }
   }
-  return nullptr;
 }
 
 template <Kind kKind, std::uint32_t kCount = most_of(kKind)>
@@ -175,8 +184,8 @@ std::int64_t run_clamp(const DenseCell* at, DenseFrame& f, std::int64_t) noexcep
 
 std::int64_t run_sine(const DenseCell* at, DenseFrame& f, std::int64_t) noexcept {
   const DensePlace& place = at[kPlace].place;
-  const SineCosine both = sine_cosine(
-      turns_of(narrow_of(f, place.a), static_cast<std::int32_t>(at[kSource].start), place.shift));
+  const SineCosine both =
+      sine_cosine(turns_of(narrow_of(f, place.a), static_cast<std::int32_t>(at[kSource].start), place.shift));
   Word* const out = f.registers + place.result;
   out[0] = both.sine;
   out[1] = both.cosine;
@@ -223,7 +232,8 @@ std::int64_t run_table(const DenseCell* at, DenseFrame& f, std::int64_t) noexcep
 
 template <unsigned kDegree, unsigned kColumns>
 DenseRun table_of(const ErrorTable& table) noexcept {
-  return table.grid_multiplier != 0 ? run_table<kDegree, kColumns, true> : run_table<kDegree, kColumns, false>;
+  return table.grid_multiplier != 0 ? run_table<kDegree, kColumns, true>
+                                    : run_table<kDegree, kColumns, false>;
 }
 DenseRun table_of(const ErrorTable& table) noexcept {
   const bool linear = table.degree == 1;
@@ -348,14 +358,12 @@ class Writer {
   static std::int64_t half_of(unsigned shift) noexcept { return (std::int64_t{1} << shift) >> 1; }
 
   Product product_of(const ProductTerm& t, bool added) const noexcept {
-    if (t.shift != 0)
-      return {added ? Kind::kAddedShifted : Kind::kSubtractedShifted, {t.shift, t.a, t.b}};
+    if (t.shift != 0) return {added ? Kind::kAddedShifted : Kind::kSubtractedShifted, {t.shift, t.a, t.b}};
     const bool first = t.a < e_.constants.size;
     if (first || t.b < e_.constants.size) {
       const std::int32_t value = e_.constants[first ? t.a : t.b];
       // The negative value of INT32_MIN is no int32.
-      if (added || value != INT32_MIN)
-        return {Kind::kScaled, {added ? value : -value, first ? t.b : t.a, 0}};
+      if (added || value != INT32_MIN) return {Kind::kScaled, {added ? value : -value, first ? t.b : t.a, 0}};
     }
     return {added ? Kind::kAdded : Kind::kSubtracted, {0, t.a, t.b}};
   }

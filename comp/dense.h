@@ -22,8 +22,8 @@ struct DenseFrame {
 };
 
 union DenseCell;
-/// Executes one step of a dense program and all steps after the step. `at`: first cell of the step; `sum`: the
-/// sum of products so far. The result is the sum after the last step. Real-time safe.
+/// Executes one step of a dense program and all steps after the step. `at`: first cell of the step; `sum`:
+/// the sum of products so far. The result is the sum after the last step. Real-time safe.
 using DenseRun = std::int64_t (*)(const DenseCell* at, DenseFrame& frame, std::int64_t sum) noexcept;
 
 /// Registers and shift of one step. The step writes its results to the registers from `result` on.
@@ -35,7 +35,7 @@ struct DensePlace {
 /// One cell of a dense program. A step has three cells and one cell for each product: the function that
 /// executes the step, its registers, its source, the terms of its products.
 union DenseCell {
-  std::int64_t start = 0;  // source: start of a sum with half of its last bit, or the factor k
+  std::int64_t start = 0;   // source: start of a sum with half of its last bit, or the factor k
   const ErrorTable* table;  // source
   const Wrap* wrap;         // source
   DenseRun run;
@@ -58,8 +58,8 @@ std::uint32_t dense_size(const Equation& equation) noexcept;
 /// Converts a VERIFIED equation to its dense form. The dense form computes the same registers as
 /// run_equation(), to the last bit, with fewer instructions: operands are decoded, constants are contained in
 /// the products, and each number of products has its own code. make_dense() also copies the constants to the
-/// frame. The tables and wraps of the equation must exist longer than the dense form. Returns false and leaves
-/// the memory as it was if the memory is too small. Not real-time safe.
+/// frame. The tables and wraps of the equation must exist longer than the dense form. Returns false and
+/// leaves the memory as it was if the memory is too small. Not real-time safe.
 bool make_dense(const Equation& equation, const DenseMemory& memory) noexcept;
 
 /// Executes the dense form of an equation. Before the call, the frame contains the channels, the lags and the
