@@ -50,6 +50,7 @@ constexpr std::uint32_t most_of(Kind kind) noexcept { return kind == Kind::kScal
 
 // Cells of a step.
 constexpr std::uint32_t kPlace = 1, kSource = 2, kTerms = 3;
+constexpr std::uint32_t kLowest = 2, kHighest = 3;  // of a step with limits
 
 // A register of a frame contains a value that fits int32.
 inline std::int32_t narrow_of(const DenseFrame& frame, std::uint16_t index) noexcept {
@@ -171,15 +172,16 @@ std::int64_t run_value(const DenseCell* at, DenseFrame& f, std::int64_t sum) noe
   VERNIER_NEXT(at, kTerms, f, sum);
 }
 
-/// Largest of two values, then the smallest of the result and a third value (kMax, then kMin).
-std::int64_t run_clamp(const DenseCell* at, DenseFrame& f, std::int64_t) noexcept {
-  const DensePlace& place = at[kPlace].place;
-  const Word above = higher(f.registers[place.a], f.registers[place.b]);
-  const Word within = lower(above, f.registers[at[kSource].term.a]);
-  Word* const out = f.registers + place.result;
-  out[0] = above;
-  out[1] = within;
-  VERNIER_NEXT(at, kTerms, f, 0);
+/// Value limited by two constants: kMax, then kMin. `kOfSum`: the value is the result of the step before, a sum.
+template <bool kOfSum>
+std::int64_t run_limits(const DenseCell* at, DenseFrame& f, std::int64_t sum) noexcept {
+  const std::int64_t value = kOfSum ? sum : f.registers[at[kPlace].place.a];
+  const std::int64_t above = higher(value, at[kLowest].start);
+  const std::int64_t within = lower(above, at[kHighest].start);
+  Word* const out = f.registers + at[kPlace].place.result;
+  out[0] = word_of(above);
+  out[1] = word_of(within);
+  VERNIER_NEXT(at, kHighest + 1, f, within);
 }
 
 std::int64_t run_sine(const DenseCell* at, DenseFrame& f, std::int64_t) noexcept {
@@ -274,8 +276,9 @@ class Writer {
     for (std::uint32_t i = 0; i < e_.instructions.size; ++i) {
       const Instruction& step = e_.instructions[i];
       const auto place = static_cast<std::uint16_t>(result);
-      if (i + 1 < e_.instructions.size && is_clamp(step, e_.instructions[i + 1], place)) {
-        write_clamp(step, e_.instructions[++i], place);
+      if (i + 1 < e_.instructions.size && are_limits(step, e_.instructions[i + 1], place)) {
+        write_limits(step, e_.instructions[i + 1], place, i > 0 && is_sum(e_.instructions[i - 1]));
+        ++i;
         result += 2;
       } else {
         write(step, place);
@@ -309,13 +312,21 @@ class Writer {
     add([&](DenseCell& cell) { cell.term = term; });
   }
 
-  // kMin of the result of kMax; one of the operands of kMin is this result.
-  static bool is_clamp(const Instruction& s, const Instruction& next, std::uint16_t result) noexcept {
-    return s.op == OpCode::kMax && next.op == OpCode::kMin && (next.a == result || next.b == result);
+  bool is_constant(std::uint16_t index) const noexcept { return index < e_.constants.size; }
+  static bool is_sum(const Instruction& s) noexcept {
+    return s.op == OpCode::kLinear || s.op == OpCode::kMultiply || s.op == OpCode::kDot;
   }
-  void write_clamp(const Instruction& s, const Instruction& next, std::uint16_t result) noexcept {
-    add_head(run_clamp, {result, s.a, s.b, 0});
-    add_term({0, next.a == result ? next.b : next.a, 0});
+  // kMax of a register and a constant, then kMin of this result and a constant, in the order of the compiler.
+  bool are_limits(const Instruction& s, const Instruction& next, std::uint16_t result) const noexcept {
+    return s.op == OpCode::kMax && next.op == OpCode::kMin && next.a == result && is_constant(s.b) &&
+           is_constant(next.b);
+  }
+  void write_limits(const Instruction& s, const Instruction& next, std::uint16_t result,
+                    bool after_sum) noexcept {
+    // The step before writes one result if it is a sum: the register before this result.
+    add_head(after_sum && s.a + 1 == result ? run_limits<true> : run_limits<false>, {result, s.a, s.b, 0});
+    add_start(e_.constants[s.b]);
+    add_start(e_.constants[next.b]);
   }
 
   void write(const Instruction& s, std::uint16_t result) noexcept {
@@ -359,8 +370,8 @@ class Writer {
 
   Product product_of(const ProductTerm& t, bool added) const noexcept {
     if (t.shift != 0) return {added ? Kind::kAddedShifted : Kind::kSubtractedShifted, {t.shift, t.a, t.b}};
-    const bool first = t.a < e_.constants.size;
-    if (first || t.b < e_.constants.size) {
+    const bool first = is_constant(t.a);
+    if (first || is_constant(t.b)) {
       const std::int32_t value = e_.constants[first ? t.a : t.b];
       // The negative value of INT32_MIN is no int32.
       if (added || value != INT32_MIN) return {Kind::kScaled, {added ? value : -value, first ? t.b : t.a, 0}};
