@@ -3,6 +3,7 @@
 
 #include "comp/fixed.h"
 #include "comp/sine.h"
+#include "comp/three_tables.h"
 
 // Each step ends with a jump to the function of the next step, so that a step needs no loop, no call and no
 // return. A compiler that does not promise the jump (no optimisation) gets a loop over the steps.
@@ -172,7 +173,8 @@ std::int64_t run_value(const DenseCell* at, DenseFrame& f, std::int64_t sum) noe
   VERNIER_NEXT(at, kTerms, f, sum);
 }
 
-/// Value limited by two constants: kMax, then kMin. `kOfSum`: the value is the result of the step before, a sum.
+/// Value limited by two constants: kMax, then kMin. `kOfSum`: the value is the result of the step before, a
+/// sum.
 template <bool kOfSum>
 std::int64_t run_limits(const DenseCell* at, DenseFrame& f, std::int64_t sum) noexcept {
   const std::int64_t value = kOfSum ? sum : f.registers[at[kPlace].place.a];
@@ -244,6 +246,16 @@ DenseRun table_of(const ErrorTable& table) noexcept {
   return run_any_table;
 }
 
+#if VERNIER_THREE_TABLES
+std::int64_t run_three_tables(const DenseCell* at, DenseFrame& f, std::int64_t) noexcept {
+  const DensePlace& place = at[kPlace].place;
+  const Word* const r = f.registers;
+  const Word last = r[at[kSource].term.a];
+  look_up_three(at + kTerms, lanes::Int4{r[place.a], r[place.b], last, last}, f.registers + place.result);
+  VERNIER_NEXT(at, kTerms + kThreeWords, f, 0);
+}
+#endif
+
 std::int64_t run_end(const DenseCell*, DenseFrame&, std::int64_t sum) noexcept { return sum; }
 
 DenseRun value_of(OpCode op) noexcept {
@@ -273,17 +285,9 @@ class Writer {
   /// Returns the number of cells.
   std::uint32_t write() noexcept {
     std::uint32_t result = e_.first_result();
-    for (std::uint32_t i = 0; i < e_.instructions.size; ++i) {
-      const Instruction& step = e_.instructions[i];
-      const auto place = static_cast<std::uint16_t>(result);
-      if (i + 1 < e_.instructions.size && are_limits(step, e_.instructions[i + 1], place)) {
-        write_limits(step, e_.instructions[i + 1], place, i > 0 && is_sum(e_.instructions[i - 1]));
-        ++i;
-        result += 2;
-      } else {
-        write(step, place);
-        result += results_of(step, e_.tables);
-      }
+    for (std::uint32_t i = 0; i < e_.instructions.size;) {
+      const std::uint32_t end = i + write_from(i, static_cast<std::uint16_t>(result));
+      for (; i < end; ++i) result += results_of(e_.instructions[i], e_.tables);
     }
     add([](DenseCell& cell) { cell.run = run_end; });
     return used_;
@@ -311,6 +315,42 @@ class Writer {
   void add_term(const DenseTerm& term) noexcept {
     add([&](DenseCell& cell) { cell.term = term; });
   }
+
+  // Writes the step that begins with instruction i; returns its number of instructions.
+  std::uint32_t write_from(std::uint32_t i, std::uint16_t result) noexcept {
+    const Instruction* const s = e_.instructions.data + i;
+    const std::uint32_t left = e_.instructions.size - i;
+#if VERNIER_THREE_TABLES
+    if (left >= 3 && are_three_tables(s, result)) {
+      write_three_tables(s, result);
+      return 3;
+    }
+#endif
+    if (left >= 2 && are_limits(s[0], s[1], result)) {
+      write_limits(s[0], s[1], result, i > 0 && is_sum(e_.instructions[i - 1]));
+      return 2;
+    }
+    write(*s, result);
+    return 1;
+  }
+
+#if VERNIER_THREE_TABLES
+  // No position of the three may be a result of the three.
+  bool are_three_tables(const Instruction* s, std::uint16_t result) const noexcept {
+    for (int i = 0; i < 3; ++i)
+      if (s[i].op != OpCode::kLookUp || s[i].a >= result || !may_be_of_three(e_.tables[s[i].b])) return false;
+    return true;
+  }
+  void write_three_tables(const Instruction* s, std::uint16_t result) noexcept {
+    add_head(run_three_tables, {result, s[0].a, s[1].a, 0});
+    add_term({0, s[2].a, 0});
+    const ThreeTables three = three_tables(e_.tables[s[0].b], e_.tables[s[1].b], e_.tables[s[2].b]);
+    const std::int64_t* const parts[] = {three.first, three.multiplier, three.shift, three.last,
+                                         three.records};
+    for (const std::int64_t* const part : parts)
+      for (int i = 0; i < 4; ++i) add_start(part[i]);
+  }
+#endif
 
   bool is_constant(std::uint16_t index) const noexcept { return index < e_.constants.size; }
   static bool is_sum(const Instruction& s) noexcept {
@@ -416,7 +456,7 @@ class Writer {
   }
 
   const Equation& e_;
-  DenseCell* cells_;
+  DenseCell* const cells_;
   std::uint32_t used_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <initializer_list>
+#include <iterator>
 #include <memory>
 #include <random>
 #include <utility>
@@ -132,19 +133,33 @@ TEST(Dense, ProductsAndWeightedSumsAreThoseOfTheProgram) {
   EXPECT_EQ(sample.dense(), sample.interpreted());
 }
 
-TEST(Dense, LowerOfAHigherValueGivesBothResults) {
-  Sample sample;
+TEST(Dense, LimitsByConstantsGiveBothResults) {
   constexpr std::uint16_t kFirst = kConstants + kChannels;
-  sample.steps = {
-      {OpCode::kMax, 0, 4, 5, 0, 0, 0}, {OpCode::kMin, 0, kFirst, 0, 0, 0, 0},      // 5, then 3
-      {OpCode::kMax, 0, 5, 6, 0, 0, 0}, {OpCode::kMin, 0, 0, kFirst + 2, 0, 0, 0},  // the other operand
-      {OpCode::kMax, 0, 4, 7, 0, 0, 0}, {OpCode::kMin, 0, 6, 4, 0, 0, 0},  // the result is no operand
-      {OpCode::kMin, 0, 4, 5, 0, 0, 0}, {OpCode::kMin, 0, kFirst + 6, 0, 0, 0, 0},
-      {OpCode::kMax, 0, 4, 5, 0, 0, 0}, {OpCode::kMax, 0, kFirst + 8, 0, 0, 0, 0},  // the last step
-      {OpCode::kMax, 0, 4, 5, 0, 0, 0}};
-  EXPECT_EQ(sample.dense(), sample.interpreted());
-  EXPECT_EQ(sample.dense()[kFirst], 5);
-  EXPECT_EQ(sample.dense()[kFirst + 1], 3);
+  const auto of = [](OpCode op, std::uint16_t a, std::uint16_t b) {
+    return Instruction{op, 0, a, b, 0, 1, 0};
+  };
+  const OpCode max = OpCode::kMax, min = OpCode::kMin;
+  const std::vector<std::vector<Instruction>> programs = {
+      {of(max, 4, 1), of(min, kFirst, 0)},                                      // of a channel, at the start
+      {of(OpCode::kLinear, 4, 0), of(max, kFirst, 1), of(min, kFirst + 1, 0)},  // of the sum before
+      {of(OpCode::kLinear, 4, 0), of(max, 5, 1), of(min, kFirst + 1, 0)},       // of another register
+      {of(OpCode::kMultiply, 4, 0), of(max, kFirst, 1), of(min, kFirst + 1, 0)},
+      {{OpCode::kDot, 0, 1, 0, 0, 0, 0}, of(max, kFirst, 1), of(min, kFirst + 1, 0)},
+      {of(OpCode::kAbs, 4, 0), of(max, kFirst, 1), of(min, kFirst + 1, 0)},  // of no sum
+      {of(max, 4, 5), of(min, kFirst, 0)},                                   // by a register
+      {of(max, 4, 1), of(min, kFirst, 5)},
+      {of(max, 4, 1), of(min, 5, 0)},  // of another value
+      {of(max, 4, 1), of(max, kFirst, 0)},
+      {of(min, 4, 1), of(min, kFirst, 0)},
+      {of(max, 4, 1)}};
+  for (const std::vector<Instruction>& steps : programs)
+    for (const std::int32_t value : {-kHigh, -70001, -70000, -69999, 2, 3, 4, kHigh}) {
+      Sample sample;
+      sample.terms = {{4, 0, 0}};
+      sample.steps = steps;
+      sample.channels[0] = value / (steps[0].op == OpCode::kMultiply || steps[0].op == OpCode::kDot ? 3 : 1);
+      ASSERT_EQ(sample.dense(), sample.interpreted()) << value;
+    }
 }
 
 /// A table of three segments of 1000 counts, and its grid.
@@ -182,6 +197,35 @@ TEST(Dense, TablesGiveTheValuesOfTheProgramAtAndBeyondTheirEnds) {
           ASSERT_EQ(sample.dense(), sample.interpreted()) << columns << " columns at " << position;
         }
       }
+}
+
+TEST(Dense, ThreeTablesInSuccessionGiveTheValuesOfTheProgram) {
+  const Table even(6, 1, true), other(6, 1, true), searched(6, 1, false), cubic(6, 3, true),
+      narrow(5, 1, true);
+  constexpr std::uint16_t kFirst = kConstants + kChannels;
+  Sample sample;
+  sample.tables = {even.table, other.table, searched.table, cubic.table, narrow.table};
+  const auto look_up = [](std::uint16_t position, std::uint16_t table) {
+    return Instruction{OpCode::kLookUp, 0, position, table, 0, 0, 0};
+  };
+  const std::vector<std::vector<Instruction>> programs = {
+      {look_up(4, 0), look_up(5, 1), look_up(6, 0)},
+      {look_up(4, 0), look_up(5, 1), look_up(6, 0), look_up(7, 1)},
+      {look_up(4, 0), look_up(5, 1)},  // two only
+      {look_up(4, 0), {OpCode::kAbs, 0, 0, 0, 0, 0, 0}, look_up(5, 1), look_up(6, 0)},
+      {look_up(4, 0), look_up(kFirst, 1), look_up(5, 0)},  // the position is a result
+      {look_up(4, 0), look_up(5, 1), look_up(kFirst + 11, 0)},
+      {look_up(4, 0), look_up(5, 2), look_up(6, 0)},
+      {look_up(4, 0), look_up(5, 1), look_up(6, 3)},
+      {look_up(4, 4), look_up(5, 1), look_up(6, 0)}};
+  const std::int32_t positions[] = {kLow, -501, -500, -499, 0, 499, 500, 501, 2499, 2500, 2501, kHigh};
+  for (const std::vector<Instruction>& steps : programs)
+    for (std::size_t i = 0; i < std::size(positions); ++i) {
+      sample.steps = steps;
+      for (std::size_t k = 0; k < kChannels; ++k)
+        sample.channels[k] = positions[(i + 5 * k) % std::size(positions)];
+      ASSERT_EQ(sample.dense(), sample.interpreted()) << "at " << positions[i];
+    }
 }
 
 TEST(Dense, MemoryWithOneCellTooFewStaysAsItWas) {
