@@ -46,8 +46,13 @@ enum class Kind : std::uint8_t { kScaled, kAdded, kSubtracted, kAddedShifted, kS
 constexpr Kind kLastKind = Kind::kSubtractedShifted;
 constexpr std::uint32_t kKindCount = static_cast<std::uint32_t>(kLastKind) + 1;
 
+/// True for a small target: fewer functions, for which a program needs more steps.
+constexpr bool kSmall = sizeof(void*) < 8 || VERNIER_JUMPS == 0;
+
 /// Largest number of products of one step.
-constexpr std::uint32_t most_of(Kind kind) noexcept { return kind == Kind::kScaled ? 8 : 4; }
+constexpr std::uint32_t most_of(Kind kind) noexcept {
+  return kind == Kind::kScaled ? (kSmall ? 4 : 8) : (kSmall ? 2 : 4);
+}
 
 // Cells of a step.
 constexpr std::uint32_t kPlace = 1, kSource = 2, kTerms = 3;
@@ -109,7 +114,7 @@ std::int64_t run_whole(const DenseCell* at, DenseFrame& f, std::int64_t sum) noe
 }
 
 /// Largest number of products in a sum that one step computes for every combination of kinds.
-constexpr std::uint32_t kMostWhole = 3;
+constexpr std::uint32_t kMostWhole = kSmall ? 2 : 3;
 
 // The kinds increase: each combination of kinds has one function.
 template <Kind kLeast, Kind... kKinds>
