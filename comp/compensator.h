@@ -172,7 +172,7 @@ class Compensator {
   /// After this call, step() executes the compiled C++ code `equation` instead of interpreting the program.
   /// The command `vernier compile` wrote this code from the same program. The compiled code and the
   /// interpreted program give identical corrections, to the last bit. The compiled code needs a
-  /// fifth to two fifths of the instructions of the interpreted program. Not real-time safe.
+  /// fifth to a third of the instructions of the interpreted program. Not real-time safe.
   void use_printed(PrintedEquation equation) noexcept { printed_ = equation; }
   bool printed() const noexcept { return printed_ != nullptr; }
 

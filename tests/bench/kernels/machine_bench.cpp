@@ -139,15 +139,16 @@ void make_poses(Bench& b) {
     for (const Channel& c : b.program().channels) real.push_back(quantity_of(b, c, b.poses.back()));
     b.real_channels.push_back(std::move(real));
   }
-  b.compensator->reset();
   const Equation& e = b.program().equation;
   b.cells.resize(dense_size(e));
-  b.frames.resize(kPoses);
+  b.frames.resize(kPoses + 1);  // the last one for the whole tick
   for (std::size_t i = 0; i < kPoses; ++i) {
     if (!make_dense(e, b.dense(i))) std::fprintf(stderr, "no dense form\n"), std::exit(1);
     for (std::uint32_t r = e.first_channel(); r < inputs; ++r) b.frames[i].registers[r] = b.registers[i][r];
     b.frames[i].lags = b.lags;
   }
+  b.compensator = std::make_unique<Compensator>(b.program());
+  b.compensator->use_dense(b.dense(kPoses));
 }
 
 void print_equation(Bench& b, std::size_t i, std::int32_t* deviation) {
@@ -239,10 +240,10 @@ std::vector<Case> cases_of(Bench& b) {
                      }});
   };
   over_poses("step", [&b](std::size_t i) { keep(b.compensator->step(b.poses[i])); });
-  over_poses("executed", [&b](std::size_t i) {
+  over_poses("interpreted", [&b](std::size_t i) {
     run_equation(b.program().equation, b.registers[i].data(), b.lags, false);
   });
-  over_poses("dense", [&b](std::size_t i) { run_dense(b.dense(i)); });
+  over_poses("executed", [&b](std::size_t i) { run_dense(b.dense(i)); });
   over_poses("printed", [&b](std::size_t i) {
     std::int32_t deviation[kMaxAxes];
     generated::equation(b.registers[i].data() + b.program().equation.first_channel(), b.lags, false,
@@ -269,9 +270,13 @@ std::vector<Case> cases_of(Bench& b) {
 #endif
   over_poses("step_cold", [&b](std::size_t i) {
     flush(b.words.get(), b.bytes);
+    flush(b.cells.data(), b.cells.size() * sizeof(DenseCell));
     keep(b.compensator->step(b.poses[i]));
   });
-  over_poses("flush_alone", [&b](std::size_t) { flush(b.words.get(), b.bytes); });
+  over_poses("flush_alone", [&b](std::size_t) {
+    flush(b.words.get(), b.bytes);
+    flush(b.cells.data(), b.cells.size() * sizeof(DenseCell));
+  });
   over_poses("step_low", [&b](std::size_t) { keep(b.compensator->step(b.poses[0])); });
   return cases;
 }
