@@ -6,12 +6,12 @@
 #include "comp/three_tables.h"
 
 // Each step ends with a jump to the function of the next step, so that a step needs no loop, no call and no
-// return. A compiler that does not promise the jump (no optimisation) gets a loop over the steps.
-// VERNIER_HIDDEN hides from the compiler how a value was computed. A hidden address of the next step gives
-// one addition and the jump through memory.
+// return. A compiler that does not promise the jump (g++ without optimisation, clang with exceptions) gets a
+// loop over the steps. VERNIER_HIDDEN hides from the compiler how a value was computed. A hidden address of
+// the next step gives one addition and the jump through memory.
 #ifdef VERNIER_LOOPS  // for the test of the loop
 #define VERNIER_JUMPS 0
-#elif defined(__GNUC__) && (defined(__clang__) || defined(__OPTIMIZE__))
+#elif defined(__clang__) ? !defined(__EXCEPTIONS) : defined(__GNUC__) && defined(__OPTIMIZE__)
 #define VERNIER_JUMPS 1
 #else
 #define VERNIER_JUMPS 0
