@@ -88,6 +88,23 @@ void Compensator::run_printed() noexcept {
     registers_[program_.outputs[i].source] = deviation[i];
 }
 
+bool Compensator::use_dense(const DenseMemory& memory) noexcept {
+  if (!make_dense(program_.equation, memory)) return false;
+  dense_ = memory;
+  return true;
+}
+
+void Compensator::run_dense_form() noexcept {
+  const Equation& e = program_.equation;
+  DenseFrame& frame = *dense_.frame;
+  for (std::uint32_t i = e.first_channel(); i < e.first_result(); ++i) frame.registers[i] = registers_[i];
+  frame.lags = lags_;
+  frame.starting = starting_;
+  run_dense(dense_);
+  for (const Output& out : program_.outputs)
+    registers_[out.source] = static_cast<std::int32_t>(frame.registers[out.source]);
+}
+
 CycleOutput Compensator::step(const CycleInput& input, WeightQ16 weight) noexcept {
   CycleOutput output;
   read_channels(input, output);
@@ -95,6 +112,8 @@ CycleOutput Compensator::step(const CycleInput& input, WeightQ16 weight) noexcep
   started_now_ = starting_;
   if (printed_ != nullptr)
     run_printed();
+  else if (dense())
+    run_dense_form();
   else
     run_equation(program_.equation, registers_, lags_, starting_);
   starting_ = false;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "comp/dense.h"
 #include "comp/equation.h"
 #include "comp/quantity.h"
 #include "comp/slew_limit.h"
@@ -171,20 +172,31 @@ class Compensator {
   /// After this call, step() executes the compiled C++ code `equation` instead of interpreting the program.
   /// The command `vernier compile` wrote this code from the same program. The compiled code and the
   /// interpreted program give identical corrections, to the last bit. The compiled code needs a
-  /// sixth to a third of the instructions of the interpreted program. Not real-time safe.
+  /// fifth to a third of the instructions of the interpreted program. Not real-time safe.
   void use_printed(PrintedEquation equation) noexcept { printed_ = equation; }
   bool printed() const noexcept { return printed_ != nullptr; }
 
+  /// After this call, step() executes the dense form of the program (comp/dense.h) instead of interpreting
+  /// the program. The dense form and the interpreted program give identical corrections, to the last bit; the
+  /// dense form needs a half of the instructions or less. `memory`: dense_size(program.equation) cells and
+  /// one frame, which no other compensator uses. Returns false if the memory is too small: the program is
+  /// interpreted as before. Not real-time safe.
+  bool use_dense(const DenseMemory& memory) noexcept;
+  bool dense() const noexcept { return dense_.cells != nullptr; }
+
   /// Returns the value of register i after the last step, for tests and for the inspection of intermediate
-  /// values. Not real-time safe.
+  /// values. In the printed and in the dense form only the channels and the outputs have values. Not
+  /// real-time safe.
   std::int32_t register_value(std::uint32_t i) const noexcept { return registers_[i]; }
 
  private:
   void read_channels(const CycleInput& input, CycleOutput& output) noexcept;
   void run_printed() noexcept;
+  void run_dense_form() noexcept;
 
   Program program_;
   PrintedEquation printed_ = nullptr;
+  DenseMemory dense_;
   std::int32_t registers_[kMaxRegisters] = {};
   LagState lags_[kMaxLags] = {};
   LagState lags_before_[kMaxLags] = {};  // state of the lags before the tick

@@ -90,7 +90,8 @@ constexpr std::uint32_t results_of(const Instruction& step, View<ErrorTable> tab
   return step.b < tables.size ? tables[step.b].columns : 0;
 }
 
-/// Executes a VERIFIED equation (comp/verify.h). Before the call, `registers` contains the constants and the
+/// Executes a VERIFIED equation (comp/verify.h) from its instructions, without further memory. The dense form
+/// (comp/dense.h) needs fewer instructions. Before the call, `registers` contains the constants and the
 /// channels. The function run_equation adds the results. `registers`: register_count() values; `lags`:
 /// lag_count states; `starting`: true sets every lag to its input. run_equation makes one pass over the
 /// instructions. The verifier proves that run_equation has no overflow and no access outside the memory.

@@ -82,12 +82,8 @@ constexpr std::uint32_t grid_piece(const ErrorTable& table, std::int32_t positio
   return static_cast<std::uint32_t>(lower<std::uint64_t>(piece, table.pieces - 1));
 }
 
-/// Returns the index of the segment that contains `position`; beyond the last station, the last segment.
-/// `position`: at or after the first station. The computing time of piece_of depends only on the table, not
-/// on the position: one multiplication for evenly spaced stations, otherwise a bisection without branches.
-/// Real-time safe.
-constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position) noexcept {
-  if (table.grid_multiplier != 0) return grid_piece(table, position);
+/// Returns the same index as piece_of(), by a bisection without branches. Real-time safe.
+constexpr std::uint32_t searched_piece(const ErrorTable& table, std::int32_t position) noexcept {
   std::uint32_t base = 0;
   for (std::uint32_t count = table.pieces; count > 1;) {
     const std::uint32_t half = count / 2;
@@ -95,6 +91,14 @@ constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position)
     count -= half;
   }
   return base;
+}
+
+/// Returns the index of the segment that contains `position`; beyond the last station, the last segment.
+/// `position`: at or after the first station. The computing time of piece_of depends only on the table, not
+/// on the position: one multiplication for evenly spaced stations, otherwise a bisection without branches.
+/// Real-time safe.
+constexpr std::uint32_t piece_of(const ErrorTable& table, std::int32_t position) noexcept {
+  return table.grid_multiplier != 0 ? grid_piece(table, position) : searched_piece(table, position);
 }
 
 /// Returns the position within the segment as a fraction 0..kFractionOne (Q30). Beyond the end of the
@@ -127,28 +131,37 @@ constexpr std::int32_t cubic_between(const std::int32_t* c, std::int64_t fractio
 
 /// Computes the values of kColumns columns of one record. piece_values is recursive, so that the compiler
 /// removes the loop. Real-time safe.
-template <unsigned kDegree, unsigned kColumns>
-constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, std::int32_t* out) noexcept {
+template <unsigned kDegree, unsigned kColumns, class Value>
+constexpr void piece_values(const std::int32_t* c, std::int64_t fraction, Value* out) noexcept {
   static_assert(kDegree == 1 || kDegree == 3);
   *out = kDegree == 1 ? linear_between(c, fraction) : cubic_between(c, fraction);
   if constexpr (kColumns > 1) piece_values<kDegree, kColumns - 1>(c + kDegree + 1, fraction, out + 1);
+}
+
+/// Interpolates all columns of a table in the segment `piece`. `held`: position, at or after the start of the
+/// segment. Real-time safe.
+template <unsigned kDegree, unsigned kColumns, class Value>
+inline void piece_look_up(const ErrorTable& table, std::uint32_t piece, std::int32_t held,
+                          Value* out) noexcept {
+  const std::int32_t* const record =
+      table.records + std::size_t{piece} * (kSegmentWords + kColumns * (kDegree + 1));
+  piece_values<kDegree, kColumns>(record + kSegmentWords, fraction_in(segment_at(record), held), out);
 }
 
 /// Interpolates all columns of a table at `position`. The table must have the degree kDegree and kColumns
 /// columns. `out`: kColumns values, each in the format of its column. The error is at most 1/2 LSB of the
 /// column (linear) or 5/2 LSB (cubic), plus 2^-29 of the change in the segment because of the fraction.
 /// Real-time safe.
-template <unsigned kDegree, unsigned kColumns>
-inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
+template <unsigned kDegree, unsigned kColumns, class Value>
+inline void look_up(const ErrorTable& table, std::int32_t position, Value* out) noexcept {
   const std::int32_t held = higher(position, table.records[0]);
-  const std::int32_t* const record =
-      table.records + std::size_t{piece_of(table, held)} * (kSegmentWords + kColumns * (kDegree + 1));
-  piece_values<kDegree, kColumns>(record + kSegmentWords, fraction_in(segment_at(record), held), out);
+  piece_look_up<kDegree, kColumns>(table, piece_of(table, held), held, out);
 }
 
 /// Interpolates like look_up<kDegree, kColumns>, with the degree and number of columns read from the table at
 /// run time. Both forms of look_up() give identical values. Real-time safe.
-inline void look_up(const ErrorTable& table, std::int32_t position, std::int32_t* out) noexcept {
+template <class Value>
+inline void look_up(const ErrorTable& table, std::int32_t position, Value* out) noexcept {
   const std::int32_t held = higher(position, table.records[0]);
   const std::int32_t* const record = table.record(piece_of(table, held));
   const std::int64_t fraction = fraction_in(segment_at(record), held);

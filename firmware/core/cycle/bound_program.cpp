@@ -15,7 +15,7 @@ Wiring wiring_of(const ImageView& view) {
   return wiring;
 }
 
-BoundProgram::BoundProgram(const ImageView& view) noexcept
+BoundProgram::BoundProgram(const ImageView& view, const DenseMemory& dense) noexcept
     : program(view.program()),
       compensator(view.program()),
       shares(view.shares()),
@@ -29,6 +29,7 @@ BoundProgram::BoundProgram(const ImageView& view) noexcept
   const PrintedModel printed = printed_model();
   if (printed.equation != nullptr && printed.fingerprint == view.header().fingerprint)
     compensator.use_printed(printed.equation);
+  if (dense.cells != nullptr) compensator.use_dense(dense);
 }
 
 namespace {

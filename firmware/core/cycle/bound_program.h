@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <memory>
 
 #include "comp/compensator.h"
 #include "firmware/core/cycle/wiring.h"
@@ -14,6 +15,23 @@ namespace vernier {
 /// the correction image.
 Wiring wiring_of(const ImageView& view);
 
+/// Memory for the dense form of one program. The memory is allocated when the board is constructed.
+class DenseStore {
+ public:
+  DenseStore() = default;
+  /// `cells`: number of cells; 0: no memory. Not real-time safe.
+  explicit DenseStore(std::uint32_t cells)
+      : size_(cells),
+        cells_(cells == 0 ? nullptr : new DenseCell[cells]),
+        frame_(cells == 0 ? nullptr : new DenseFrame) {}
+  DenseMemory memory() const noexcept { return {cells_.get(), size_, frame_.get()}; }
+
+ private:
+  std::uint32_t size_ = 0;
+  std::unique_ptr<DenseCell[]> cells_;
+  std::unique_ptr<DenseFrame> frame_;
+};
+
 /// A compiled correction program, the state of its execution, and the devices of the board that the program
 /// uses. A BoundProgram is built outside the tick. Cycle::use() then starts it within one tick. A
 /// BoundProgram contains pointers to the bytes of the image.
@@ -21,8 +39,10 @@ struct BoundProgram {
   /// Constructs the empty program, which computes no correction. The empty program is used if there is no
   /// image.
   BoundProgram() noexcept : compensator(Program{}) {}
-  /// Binds axis i and input i of the correction image to axis i and input i of the board. Not real-time safe.
-  explicit BoundProgram(const ImageView& view) noexcept;
+  /// Binds axis i and input i of the correction image to axis i and input i of the board. `dense`: memory for
+  /// the dense form of the program, which must exist longer than the BoundProgram. If the memory is too small
+  /// or absent, the program is interpreted. Not real-time safe.
+  explicit BoundProgram(const ImageView& view, const DenseMemory& dense = {}) noexcept;
 
   bool empty() const noexcept { return program.axis_count == 0; }
 

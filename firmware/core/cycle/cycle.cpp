@@ -12,7 +12,11 @@ Fault first_of(Fault a, Fault b) noexcept { return a != Fault::kNone ? a : b; }
 }  // namespace
 
 Cycle::Cycle(const ImageView& view, const Board& board, const CycleLimits& limits) noexcept
-    : board_(board), limits_(limits), own_(std::make_unique<BoundProgram>(view)), now_(own_.get()) {
+    : board_(board),
+      limits_(limits),
+      own_dense_(dense_size(view.program().equation)),
+      own_(std::make_unique<BoundProgram>(view, own_dense_.memory())),
+      now_(own_.get()) {
   set_up(wiring_of(view), TimeUs(view.header().tick_us));
   use(*own_);
 }

@@ -140,6 +140,7 @@ class Cycle {
 
   Board board_;
   CycleLimits limits_;
+  DenseStore own_dense_;
   std::unique_ptr<BoundProgram> own_;
   BoundProgram* now_;
   ModeControl mode_;

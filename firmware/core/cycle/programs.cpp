@@ -14,19 +14,22 @@ void LoadedProgram::start_anew() noexcept {
   if (empty)
     std::construct_at(&bound);
   else
-    std::construct_at(&bound, view);
+    std::construct_at(&bound, view, dense.memory());
   std::copy_n(axis, kMaxAxes, bound.axis);
   std::copy_n(inputs, kMaxInputs, bound.input);
 }
 
-Programs::Programs(Exchange& exchange, std::uint32_t places, std::uint32_t image_bytes)
+Programs::Programs(Exchange& exchange, std::uint32_t places, std::uint32_t image_bytes,
+                   std::uint32_t dense_cells)
     : exchange_(exchange),
       places_(places),
       image_bytes_(image_bytes),
       programs_(new LoadedProgram[places]),
       owned_(new bool[places]()) {
-  for (std::uint32_t i = 0; i < places_; ++i)
+  for (std::uint32_t i = 0; i < places_; ++i) {
     programs_[i].words.reset(new std::uint64_t[(image_bytes + 7) / 8]);
+    programs_[i].dense = DenseStore(dense_cells);
+  }
 }
 
 ProgramRef Programs::take() noexcept {

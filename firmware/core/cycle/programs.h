@@ -10,12 +10,13 @@
 
 namespace vernier {
 
-/// Memory for one uploaded image: its header, the image, and the bound program. The memory for the bytes is
-/// allocated when the board is constructed.
+/// Memory for one uploaded image: its header, the image, and the bound program with its dense form. The
+/// memory for the bytes and for the dense form is allocated when the board is constructed.
 struct LoadedProgram {
   UploadHeader header{};
   std::unique_ptr<std::uint64_t[]> words;
   ImageView view;
+  DenseStore dense;
   BoundProgram bound;                 // used by the tick while the program runs, and by the guardian
                                       // before and after
   std::uint32_t axis[kMaxAxes] = {};  // for each axis of the image: index of the board's axis
@@ -58,9 +59,10 @@ class Programs {
   /// returns, and for a program that is being received.
   static constexpr std::uint32_t kFewest = 3;
 
-  /// `exchange`: must exist longer than this object; `image_bytes`: size of the largest image. The
+  /// `exchange`: must exist longer than this object; `image_bytes`: size of the largest image;
+  /// `dense_cells`: size of the largest dense form, 0: every program is interpreted. The
   /// constructor allocates the memory of all programs. Not real-time safe.
-  Programs(Exchange& exchange, std::uint32_t places, std::uint32_t image_bytes);
+  Programs(Exchange& exchange, std::uint32_t places, std::uint32_t image_bytes, std::uint32_t dense_cells);
 
   // ---- functions for the store
   /// Returns a free program memory; null if every memory is in use.

@@ -56,7 +56,8 @@ Uploader::Uploader(SlotStore& store, const Wiring& wiring, Exchange& exchange, c
       wiring_(wiring),
       options_(options),
       programs_(exchange, options.places,
-                store.capacity() - lower(store.capacity(), std::uint32_t{sizeof(UploadHeader)})),
+                store.capacity() - lower(store.capacity(), std::uint32_t{sizeof(UploadHeader)}),
+                options.dense_cells),
       workspace_(new ImageWorkspace) {
   publish();
 }
@@ -128,7 +129,7 @@ UploadResult Uploader::check_image(LoadedProgram& loaded) {
   if (loaded.view.header().fingerprint != header.fingerprint) return refused(UploadFault::kFingerprint);
   if (!within_budget(loaded.view)) return refused(UploadFault::kTooMuchWork);
   std::destroy_at(&loaded.bound);
-  std::construct_at(&loaded.bound, loaded.view);
+  std::construct_at(&loaded.bound, loaded.view, loaded.dense.memory());
   result.bind = bind(loaded.view, wiring_, options_.tick, loaded.bound, result.offender);
   if (result.bind != BindFault::kNone) result.fault = UploadFault::kForeignMachine;
   std::copy_n(loaded.bound.axis, kMaxAxes, loaded.axis);

@@ -55,7 +55,9 @@ class Uploader {
     BoardIdentity identity;
     TimeUs trial_time{60'000'000};  // duration of a trial, after which the image is reverted
     std::uint32_t places = Programs::kFewest;
-    WorkBudget budget{};  // work budget from measured_work_budget()
+    std::uint32_t dense_cells = 4096;  // memory for the dense form of each program; a program with a larger
+                                       // dense form is interpreted; 0: every program is interpreted
+    WorkBudget budget{};               // work budget from measured_work_budget()
   };
   /// `store`, `wiring`, `exchange`: must exist longer than the uploader. Not real-time safe.
   Uploader(SlotStore& store, const Wiring& wiring, Exchange& exchange, const Options& options);

@@ -7,6 +7,7 @@
 
 #include "comp/error_table.h"
 #include "comp/sine.h"
+#include "comp/three_tables.h"
 #include "comp/verify.h"
 #include "tests/bench/kernels/counted.h"
 
@@ -105,6 +106,13 @@ void look_up_any(const Axis<kDegree>* axes, const std::int32_t* position, std::i
   for (std::size_t a = 0; a < kAxes; ++a) look_up(axes[a].table, position[a], out[a]);
 }
 
+#if VERNIER_THREE_TABLES
+ThreeTables three;
+void look_up_lanes(const Axis<1>*, const std::int32_t* position, std::int32_t out[kAxes][kColumns]) {
+  look_up_three(&three, lanes::Int4{position[0], position[1], position[2], position[2]}, out[0]);
+}
+#endif
+
 template <auto kLookUp, unsigned kDegree>
 Case over(const char* name, const Positions& positions, const Axis<kDegree>* axes) {
   return {name, [=, &positions](std::size_t n) {
@@ -152,6 +160,11 @@ std::vector<Case> cases() {
   list.push_back(over<look_up_fixed<1>>("linear_6x3/vernier_first_station", first_station, t.linear));
   list.push_back(over<look_up_fixed<1>>("linear_6x3/vernier_last_station", last_station, t.linear));
   list.push_back(over<look_up_fixed<1>>("linear_6x3/vernier_far_beyond", far_beyond, t.linear));
+#if VERNIER_THREE_TABLES
+  three = three_tables(t.linear[0].table, t.linear[1].table, t.linear[2].table);
+  list.push_back(over<look_up_lanes>("linear_6x3/vernier_three_tables", t.position, t.linear));
+  list.push_back(over<look_up_lanes>("linear_6x3/vernier_three_tables_far_beyond", far_beyond, t.linear));
+#endif
   list.push_back(over<look_up_any<1>>("linear_6x3/vernier_in_programs", t.position, t.linear));
   list.push_back(over<look_up_fixed<3>>("cubic_6x3/vernier", t.position, t.cubic));
   list.push_back(over<look_up_any<3>>("cubic_6x3/vernier_in_programs", t.position, t.cubic));

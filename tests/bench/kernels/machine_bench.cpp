@@ -6,6 +6,7 @@
 #include <fstream>
 #include <memory>
 
+#include "comp/dense.h"
 #include "comp/verify.h"
 #include "tests/bench/kernels/counted.h"
 #include "tests/bench/kernels/frame_peers.h"
@@ -44,8 +45,13 @@ struct Bench {
   std::unique_ptr<Compensator> compensator;
   LagState lags[kMaxLags] = {};
   std::vector<Chain> chains;
+  std::vector<DenseCell> cells;
+  std::vector<DenseFrame> frames;  // per pose, constants and channels in place
 
   const Program& program() const { return view.program(); }
+  DenseMemory dense(std::size_t pose) {
+    return {cells.data(), static_cast<std::uint32_t>(cells.size()), &frames[pose]};
+  }
 };
 
 // Units of one count: mm or deg, mm/s..., 1; as the compiler takes them.
@@ -133,7 +139,16 @@ void make_poses(Bench& b) {
     for (const Channel& c : b.program().channels) real.push_back(quantity_of(b, c, b.poses.back()));
     b.real_channels.push_back(std::move(real));
   }
-  b.compensator->reset();
+  const Equation& e = b.program().equation;
+  b.cells.resize(dense_size(e));
+  b.frames.resize(kPoses + 1);  // the last one for the whole tick
+  for (std::size_t i = 0; i < kPoses; ++i) {
+    if (!make_dense(e, b.dense(i))) std::fprintf(stderr, "no dense form\n"), std::exit(1);
+    for (std::uint32_t r = e.first_channel(); r < inputs; ++r) b.frames[i].registers[r] = b.registers[i][r];
+    b.frames[i].lags = b.lags;
+  }
+  b.compensator = std::make_unique<Compensator>(b.program());
+  b.compensator->use_dense(b.dense(kPoses));
 }
 
 void print_equation(Bench& b, std::size_t i, std::int32_t* deviation) {
@@ -152,7 +167,20 @@ int check(Bench& b, const std::string& directory) {
   double worst_nm = 0;
   bool known = false;
   for (std::size_t i = 0; i < kPoses; ++i) {
+    LagState lags_before[kMaxLags];
+    std::copy(lags, lags + kMaxLags, lags_before);
     run_equation(b.program().equation, b.registers[i].data(), lags, i == 0);
+    LagState dense_lags[kMaxLags] = {};
+    std::copy(lags_before, lags_before + kMaxLags, dense_lags);
+    b.frames[i].lags = dense_lags;
+    b.frames[i].starting = i == 0;
+    run_dense(b.dense(i));
+    b.frames[i].lags = b.lags;
+    b.frames[i].starting = false;
+    const auto same = [](std::int32_t executed, Word dense) { return executed == dense; };
+    if (!std::equal(b.registers[i].begin(), b.registers[i].begin() + b.program().equation.register_count(),
+                    b.frames[i].registers, same))
+      return std::fprintf(stderr, "dense and executed form differ at pose %zu\n", i), 1;
     std::int32_t printed[kMaxAxes] = {};
     double flat[kMaxAxes] = {};
     print_equation(b, i, printed);
@@ -212,9 +240,10 @@ std::vector<Case> cases_of(Bench& b) {
                      }});
   };
   over_poses("step", [&b](std::size_t i) { keep(b.compensator->step(b.poses[i])); });
-  over_poses("executed", [&b](std::size_t i) {
+  over_poses("interpreted", [&b](std::size_t i) {
     run_equation(b.program().equation, b.registers[i].data(), b.lags, false);
   });
+  over_poses("executed", [&b](std::size_t i) { run_dense(b.dense(i)); });
   over_poses("printed", [&b](std::size_t i) {
     std::int32_t deviation[kMaxAxes];
     generated::equation(b.registers[i].data() + b.program().equation.first_channel(), b.lags, false,
@@ -241,9 +270,13 @@ std::vector<Case> cases_of(Bench& b) {
 #endif
   over_poses("step_cold", [&b](std::size_t i) {
     flush(b.words.get(), b.bytes);
+    flush(b.cells.data(), b.cells.size() * sizeof(DenseCell));
     keep(b.compensator->step(b.poses[i]));
   });
-  over_poses("flush_alone", [&b](std::size_t) { flush(b.words.get(), b.bytes); });
+  over_poses("flush_alone", [&b](std::size_t) {
+    flush(b.words.get(), b.bytes);
+    flush(b.cells.data(), b.cells.size() * sizeof(DenseCell));
+  });
   over_poses("step_low", [&b](std::size_t) { keep(b.compensator->step(b.poses[0])); });
   return cases;
 }

@@ -136,6 +136,7 @@ ServiceOptions options_of_the_board() {
   copy(key.data(), reinterpret_cast<const std::uint8_t*>(kFactoryKey), kPublicKeyBytes);
   options.upload.identity = key;
   options.upload.places = Programs::kFewest;
+  options.upload.dense_cells = 128;
   options.upload.trial_time = TimeUs(std::int64_t{3'600'000'000});  // ticks run faster than time here
   options.activate = true;
   options.ticks_kept = 64;

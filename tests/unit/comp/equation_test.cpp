@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
+#include "comp/dense.h"
 #include "comp/sine.h"
 
 namespace vernier::equation_test {
@@ -27,8 +29,23 @@ struct SingleStep {
     std::copy(constants.begin(), constants.end(), registers.begin());
     const Equation equation{{constants.data(), 4}, 0,          {&step, 1}, {terms.data(), 4},
                             {&table, 1},           {&wrap, 1}, 1,          2};
+    LagState dense_lag = lag;
     run_equation(equation, registers.data(), &lag, starting);
-    return {registers[4], registers[5]};
+    const std::array<std::int32_t, 2> results = {registers[4], registers[5]};
+    EXPECT_EQ(dense(equation, dense_lag, starting), results);
+    EXPECT_EQ(dense_lag.value, lag.value);
+    return results;
+  }
+
+  /// The same in the dense form, for values that the verifier accepts.
+  static std::array<std::int32_t, 2> dense(const Equation& equation, LagState& lag, bool starting) {
+    std::vector<DenseCell> cells(dense_size(equation));
+    DenseFrame frame;
+    EXPECT_TRUE(make_dense(equation, {cells.data(), static_cast<std::uint32_t>(cells.size()), &frame}));
+    frame.lags = &lag;
+    frame.starting = starting;
+    run_dense({cells.data(), static_cast<std::uint32_t>(cells.size()), &frame});
+    return {static_cast<std::int32_t>(frame.registers[4]), static_cast<std::int32_t>(frame.registers[5])};
   }
 };
 

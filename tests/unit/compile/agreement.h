@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Dense>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -71,11 +72,18 @@ inline void compare_poses(const TestMachine& test, const std::vector<CycleInput>
   const std::vector<Eigen::Matrix3Xd> moved = nominal_directions(test.machine, states, axes);
   const auto n = static_cast<Eigen::Index>(axes.size());
   const auto count = static_cast<Eigen::Index>(inputs.size());
-  Compensator compensator(test.loaded->view.program());
+  Compensator compensator(test.loaded->view.program()), dense(test.loaded->view.program());
+  std::vector<DenseCell> cells(dense_size(test.loaded->view.program().equation));
+  const auto frame = std::make_unique<DenseFrame>();
+  dense.use_dense({cells.data(), static_cast<std::uint32_t>(cells.size()), frame.get()});
   Eigen::MatrixXd fixed(n, count);
   States turned = states, corrected = states;
   for (Eigen::Index i = 0; i < count; ++i) {
     compensator.step(inputs[static_cast<std::size_t>(i)]);
+    dense.step(inputs[static_cast<std::size_t>(i)]);
+    for (const Output& out : test.loaded->view.program().outputs)
+      if (dense.register_value(out.source) != compensator.register_value(out.source))
+        throw std::runtime_error("the dense form differs from the interpreted program");
     for (std::size_t k = 0; k < test.compiled.bounds.size(); ++k) {
       const std::size_t axis = test.compiled.program.outputs[k].axis;
       corrected.axis[axis][i] -= test.deviation_units(compensator, k);

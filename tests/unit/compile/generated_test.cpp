@@ -78,20 +78,30 @@ TEST_P(Generated, CorrectsAndSharesAsTheExecutedProgramDoes) {
   const TestMachine test(GetParam());
   const Printed printed(GetParam(), test.compiled);
   const ImageView& view = test.loaded->view;
-  Compensator executed(view.program()), built_in(view.program());
+  Compensator executed(view.program()), built_in(view.program()), dense(view.program());
   built_in.use_printed(printed.equation);
+  std::vector<DenseCell> cells(dense_size(view.program().equation));
+  DenseFrame frame;
+  ASSERT_TRUE(dense.use_dense({cells.data(), static_cast<std::uint32_t>(cells.size()), &frame}));
   std::mt19937_64 random(78);
   std::size_t tick = 0;
   for (const CycleInput& input : test.random_poses(20000, random)) {
-    const CycleOutput one = executed.step(input), two = built_in.step(input);
+    const CycleOutput one = executed.step(input), two = built_in.step(input), three = dense.step(input);
     ASSERT_EQ(one.flags, two.flags);
-    for (std::uint32_t axis = 0; axis < kMaxAxes; ++axis)
+    ASSERT_EQ(one.flags, three.flags);
+    for (std::uint32_t axis = 0; axis < kMaxAxes; ++axis) {
       ASSERT_EQ(one.correction[axis].counts, two.correction[axis].counts);
+      ASSERT_EQ(one.correction[axis].counts, three.correction[axis].counts);
+    }
     if (++tick % 100 != 0) continue;
-    std::vector<Correction> first(view.shares().shares.size), second(view.shares().shares.size);
+    std::vector<Correction> first(view.shares().shares.size), second(first), third(first);
     shares_of(executed, view.shares(), view.program(), first.data());
     shares_of(built_in, view.shares(), view.program(), second.data());
-    for (std::size_t i = 0; i < first.size(); ++i) ASSERT_EQ(first[i].counts, second[i].counts);
+    shares_of(dense, view.shares(), view.program(), third.data());
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      ASSERT_EQ(first[i].counts, second[i].counts);
+      ASSERT_EQ(first[i].counts, third[i].counts);
+    }
   }
 }
 

@@ -232,6 +232,18 @@ struct TwoInputs : InputReader {
   int reads[kMaxInputs + 1] = {};
 };
 
+TEST(BoundProgram, IsInterpretedIfItsDenseFormHasTooLittleMemory) {
+  const auto image = image_with_two_inputs();
+  const std::uint32_t size = dense_size(image->view.program().equation);
+  for (const std::uint32_t cells : {0u, size - 1, size}) {
+    const DenseStore store(cells);
+    EXPECT_EQ(store.memory().cells != nullptr, cells != 0);
+    const BoundProgram bound(image->view, store.memory());
+    EXPECT_EQ(bound.compensator.dense(), cells == size);
+  }
+  EXPECT_FALSE(BoundProgram(image->view).compensator.dense());
+}
+
 // A second reading would be of another instant, and a reading beyond the board's inputs of no device.
 TEST(Cycle, EachInputIsReadOnceATickAndNoneBeyondThem) {
   const auto image = image_with_two_inputs();

@@ -524,7 +524,7 @@ TEST_F(Upload, GoingBackStartsTheConfirmedImageAnewUnlessItRuns) {
 /// The programs of a board, with the tick's part in the hands of the test.
 struct ProgramsBench {
   Exchange exchange{16, 16};
-  Programs programs{exchange, 2, 1024};
+  Programs programs{exchange, 2, 1024, 64};
   BoundProgram before;
   /// The tick takes what is offered; the guardian learns of it when the tick has put the old one away.
   void take() { EXPECT_NE(exchange.offered.exchange(nullptr), nullptr); }
