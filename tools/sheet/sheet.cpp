@@ -167,11 +167,41 @@ double agreement(const std::vector<Line>& lines, char separator) {
   return lines.empty() ? 0 : static_cast<double>(best) / static_cast<double>(lines.size());
 }
 
+/// True for a line of numbers with decimal commas and blanks between them: "100,0000   -0,0032". Each comma
+/// is inside a number that has blanks on both sides.
+bool is_blank_separated(const std::string& line) {
+  std::size_t numbers = 0, commas = 0;
+  for (const std::string& word : text::words_in(line, " \t")) {
+    const bool comma = word.find(',') != std::string::npos;
+    const bool number = plain_number(word, true).has_value();
+    if (comma && !number) return false;
+    numbers += number ? 1 : 0;
+    commas += comma ? 1 : 0;
+  }
+  return numbers >= 2 && commas > 0;
+}
+
+/// True if the commas of the lines are decimal signs, and blanks separate the columns.
+bool has_decimal_commas_and_blanks(const std::vector<Line>& lines) {
+  std::size_t with_commas = 0, aligned = 0;
+  for (const Line& line : lines) {
+    const auto comma = line.text.find(',');
+    const bool number =
+        comma != std::string::npos && line.text.find_first_of("0123456789") != std::string::npos;
+    with_commas += number ? 1 : 0;
+    aligned += number && is_blank_separated(line.text) ? 1 : 0;
+  }
+  // A title may have a comma too.
+  return aligned >= 2 && 10 * aligned >= 8 * with_commas && 2 * aligned >= lines.size();
+}
+
 char separator_of_lines(const std::vector<Line>& lines) {
   constexpr double kMostAgree = 0.6;  // titles and remarks above a table are lines too
   char best = ' ';
   double most = 0;
+  const bool blanks = has_decimal_commas_and_blanks(lines);
   for (const char separator : {'\t', ';', ',', '|'}) {
+    if (separator == ',' && blanks) continue;
     const double agree = agreement(lines, separator);
     if (agree >= kMostAgree) return separator;
     if (agree > most) {
@@ -258,29 +288,46 @@ void drop_empty_columns(Sheet& sheet) {
     for (auto& row : sheet.rows) row.pop_back();
 }
 
-/// Negative numbers in brackets, as accounting formats write them: "(4.5)" in a row and a column with other
-/// numbers becomes "-4.5", with a note. A row of bracketed numbers alone numbers the columns.
+/// The text in the brackets of a cell; empty for other cells.
+std::string in_brackets(const std::string& cell) {
+  return cell.size() > 2 && cell.front() == '(' && cell.back() == ')'
+             ? text::trimmed(cell.substr(1, cell.size() - 2))
+             : std::string();
+}
+
+bool is_a_number(const std::string& cell) {
+  return plain_number(cell, true).has_value() || plain_number(cell, false).has_value();
+}
+
+bool is_number_in_brackets(const std::string& cell) {
+  const std::string value = in_brackets(cell);
+  return !value.empty() && value.front() >= '0' && value.front() <= '9' && is_a_number(value);
+}
+
+/// True if the numbers in brackets of a column are values: other numbers of the column have no brackets, or
+/// one of them has a decimal sign. Whole numbers in brackets alone may number the rows.
+bool has_accounting_values(const Sheet& sheet, std::size_t k) {
+  return std::any_of(sheet.rows.begin(), sheet.rows.end(), [&](const auto& row) {
+    return is_a_number(row[k]) ||
+           (is_number_in_brackets(row[k]) && row[k].find_first_of(".,") != std::string::npos);
+  });
+}
+
+/// Negative numbers in brackets, as accounting formats write them: "(4.5)" in a row with other numbers
+/// becomes
+/// "-4.5", with a note. A row of bracketed numbers alone numbers the columns.
 void read_accounting(Sheet& sheet) {
-  const auto number = [](const std::string& cell) {
-    return plain_number(cell, true).has_value() || plain_number(cell, false).has_value();
-  };
-  const auto inside = [](const std::string& cell) {
-    return cell.size() > 2 && cell.front() == '(' && cell.back() == ')'
-               ? text::trimmed(cell.substr(1, cell.size() - 2))
-               : std::string();
-  };
   std::size_t read = 0;
   std::string first;
+  std::map<std::size_t, bool> has_values;
   for (auto& row : sheet.rows) {
-    if (std::none_of(row.begin(), row.end(), number)) continue;
+    if (std::none_of(row.begin(), row.end(), is_a_number)) continue;
     for (std::size_t k = 0; k < row.size(); ++k) {
-      const std::string value = inside(row[k]);
-      if (value.empty() || value.front() < '0' || value.front() > '9' || !number(value)) continue;
-      if (std::none_of(sheet.rows.begin(), sheet.rows.end(),
-                       [&](const auto& other) { return number(other[k]); }))
-        continue;
+      if (!is_number_in_brackets(row[k])) continue;
+      if (!has_values.contains(k)) has_values[k] = has_accounting_values(sheet, k);
+      if (!has_values[k]) continue;
       if (++read == 1) first = row[k];
-      row[k] = "-" + value;
+      row[k] = "-" + in_brackets(row[k]);
     }
   }
   if (read > 0)
