@@ -545,6 +545,10 @@ TEST(SheetCells, AColumnWhollyInBracketsIsNegative) {
   EXPECT_EQ(read("Soll X [mm];Abw. X [um]\n0;(1,5)\n100;(3)\n200;(12,5)\n"),
             "X[mm],x[mm]\n0,-0.0015\n100,99.997\n200,199.9875\nnote: 3 cells such as \"(1,5)\" are read as "
             "negative numbers (accounting format)\n");
+  EXPECT_THAT(read("Soll Z [mm];Ist Z [mm]\n0;0,0010\n(50);(50,0123)\n(100);(100)\n"),
+              StartsWith("Z[mm],z[mm]\n0,0.0010\n-50,-50.0123\n-100,-100\n"));
+  EXPECT_THAT(read("Soll Z [mm];Ist Z [mm]\n(50);(50,0123)\n(100);(100,002)\n"),
+              StartsWith("Z[mm],z[mm]\n-50,-50.0123\n-100,-100.002\n"));
   // Whole numbers in brackets alone number the rows.
   EXPECT_THAT(read("Nr;Soll X [mm];Abw. X [um]\n(1);0;1,5\n(2);100;3\n(3);200;2\n"),
               Not(HasSubstr("negative")));
@@ -554,6 +558,11 @@ TEST(SheetCells, BlanksSeparateColumnsWithDecimalCommas) {
   EXPECT_EQ(read("Soll X [mm]   Abw. X [mm]\n  0,0000    0,0012\n100,0000   -0,0032\n200,0000    0,0040\n"),
             "X[mm],x[mm]\n0.0000,0.0012\n100.0000,99.9968\n200.0000,200.004\n");
   EXPECT_EQ(read("X [mm],x [mm]\n0,0.001\n100,100.002\n"), "X[mm],x[mm]\n0,0.001\n100,100.002\n");
+  // A title of several words is one cell.
+  EXPECT_THAT(
+      read("Deviations in um\nX [mm]     Run 1 fwd   Run 1 rev\n0        0.1      -3.0\n100      1.1      "
+           "-2.0\n"),
+      StartsWith("X[mm],dirX,run,x[mm]\n0,1,1,0.0001\n100,1,1,100.0011\n0,-1,1,-0.003\n"));
 }
 
 TEST(SheetCells, ATitleStatesTheUnitOfTheDeviations) {
