@@ -14,6 +14,7 @@
 #include "tools/diagnose/pieces.h"
 #include "tools/diagnose/sentences.h"
 #include "tools/diagnose/shape.h"
+#include "tools/fit/findings.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/noise/noise.h"
 #include "tools/maths/decompositions.h"
@@ -135,11 +136,14 @@ class Decision {
     // structure.
     const bool known = fit::has_uncertainty(found_.measurement) || fit::noise_um(found_.measurement) ||
                        fit::noise_urad(found_.measurement);
-    return with_refused(known
-                            ? "The residual is noise: there is nothing to add."
-                            : "The residual has no structure that a candidate explains: there is nothing to "
-                              "add. The readings have no u and no repeats, so the diagnosis cannot tell "
-                              "whether a residual of this size is the noise of the instrument.");
+    if (known) return with_refused("The residual is noise: there is nothing to add.");
+    const std::string nothing =
+        "The residual has no structure that a candidate explains: there is nothing to add. ";
+    if (fit::repeats_in_other_runs(found_.measurement))
+      return with_refused(nothing + fit::kRepeatsInOtherRuns);
+    return with_refused(nothing +
+                        "The readings have no u and no repeats, so the diagnosis cannot tell "
+                        "whether a residual of this size is the noise of the instrument.");
   }
 
   std::string nothing_explains() {

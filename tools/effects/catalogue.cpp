@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "tools/effects/catalogue.h"
 #include "tools/model/expression.h"
@@ -119,12 +120,21 @@ class CatalogueReader {
   }
 
   void take_size(Effect& effect, std::string rest) const {
+    static constexpr const char* kForm = "a size is \"size FACTOR UNKNOWN... [as NAME]\"";
     EffectSize size;
     const std::string factor = next_word(rest);
     const auto value = text::parse_number(factor);
-    if (!value || *value == 0 || rest.empty()) fail(factor, "a size is \"size FACTOR UNKNOWN...\"");
+    if (!value || *value == 0 || rest.empty()) fail(factor, kForm);
     size.factor = *value;
-    while (!rest.empty()) size.unknowns.push_back(next_word(rest));
+    while (!rest.empty()) {
+      std::string word = next_word(rest);
+      if (word != "as") {
+        size.unknowns.push_back(std::move(word));
+        continue;
+      }
+      if (rest.empty() || size.unknowns.empty()) fail(word, kForm);
+      size.name = std::exchange(rest, "");
+    }
     effect.size = size;
   }
 

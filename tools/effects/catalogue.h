@@ -100,6 +100,7 @@ std::vector<std::string> marks_in(const std::string& name);
 struct EffectSize {
   double factor = 1;
   std::vector<std::string> unknowns;  // names of the unknowns in the catalogue
+  std::string name;                   // name of the number, "reversal value B"; empty: that of the effect
 };
 
 /// An entry of the catalogue: an effect that a report may name as missing.

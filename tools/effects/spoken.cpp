@@ -142,6 +142,7 @@ std::string spoken_with_size(const Candidate& candidate, const std::vector<Spoke
   const bool one = size->unknowns.size() == 1;
   const double amount = one ? plain : std::sqrt(squares);
   const double std = amount == 0 ? 0 : std::sqrt(variance) / std::abs(amount);
+  if (!size->name.empty()) text += ", " + size->name;
   text += " " + sized(size->factor * amount, std::abs(size->factor) * std, unit);
   // A second coefficient `s` is the change of the effect along its axis.
   const CandidateUnknown* const slope = by_rule(candidate, "s");

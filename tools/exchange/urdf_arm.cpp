@@ -57,7 +57,8 @@ class Arm {
 
   UrdfFile file() const {
     UrdfFile file;
-    file.text = text();
+    file.undetermined = undetermined();
+    file.text = text(file.undetermined);
     measure(file);
     return file;
   }
@@ -112,6 +113,17 @@ class Arm {
         throw text::InputError({machine_.file, machine_.axes[axis].line}, machine_.axes[axis].name,
                                "the axis does not move exactly one transform of the chain");
     return order;
+  }
+
+  std::vector<UndeterminedJoint> undetermined() const {
+    const model::Machine nominal = model::nominal_machine(machine_);
+    std::vector<std::size_t> axis_of;
+    for (const model::Transform& transform : nominal.tool) {
+      axis_of.push_back(kNoAxis);
+      for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis)
+        if (moves(nominal, transform, axis)) axis_of.back() = axis;
+    }
+    return undetermined_joints(machine_, axis_of);
   }
 
   /// Half of the motion by which the axis of a joint is found.
@@ -213,16 +225,26 @@ class Arm {
                        *axis.min / unit, *axis.max / unit);
   }
 
-  std::string text() const {
+  std::string text(const std::vector<UndeterminedJoint>& undetermined) const {
+    const std::string open =
+        undetermined.empty()
+            ? ""
+            : fmt::format(
+                  "<!-- The readings of the fit do not determine these joints completely; their values are "
+                  "set "
+                  "by convention or prior:\n     {}.\n     Other values of the same joints give the same "
+                  "positions of the tool in the survey. -->\n",
+                  joints_text(undetermined));
     std::string text = fmt::format(
         "<?xml version=\"1.0\"?>\n"
         "<!-- The calibrated joints of {}: m, rad. Each frame is parallel to the base at the reference "
         "pose.\n"
         "     A machine file has no effort and velocity limits: both are 0; write the values of your robot. "
         "-->\n"
+        "{}"
         "<robot name=\"{}\">\n"
         "  <link name=\"base_link\"/>\n",
-        machine_.name, machine_.name);
+        machine_.name, open, machine_.name);
     std::string parent = "base_link";
     Vector3d at = Vector3d::Zero();
     for (const Joint& joint : joints_) {

@@ -2,7 +2,9 @@
 #pragma once
 #include <cstddef>
 #include <string>
+#include <vector>
 
+#include "tools/exchange/undetermined_joints.h"
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
@@ -14,6 +16,7 @@ struct UrdfFile {
   std::string text;
   double worst_um = 0, worst_urad = 0;  // largest difference of the tool point, and of the tool direction
   std::size_t positions = 0;            // number of positions at which the difference was computed
+  std::vector<UndeterminedJoint> undetermined;  // joints that the readings of the fit do not determine
 };
 
 /// Returns the URDF model of an arm with one joint for each axis. Origin and axis of each joint are those

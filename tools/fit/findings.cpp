@@ -222,8 +222,8 @@ void add_exact_lengths(const FitResult& result, const model::Measurement& m,
          "size of the machine."});
 }
 
-/// Without a column setup each run is a set-up of its own, and then equal targets of two runs are no repeats.
-/// True if they are repeats in one set-up.
+}  // namespace
+
 bool repeats_in_other_runs(const model::Measurement& m) {
   if (!m.states.setup.of.empty() || m.states.run_names.size() < 2) return false;
   model::Measurement one = m;
@@ -231,8 +231,6 @@ bool repeats_in_other_runs(const model::Measurement& m) {
   one.states.setup.names = {"1"};
   return noise_um(one) || noise_urad(one);
 }
-
-}  // namespace
 
 Vector3d model_discrepancy(const FitResult& result, const model::Measurement& m) {
   const auto fitted = squares_of(result, m, false), checked = squares_of(result, m, true);
@@ -283,14 +281,11 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
     return one.code == "something-missing";
   });
   if (!result.noise_um && result.before.rms_um)
-    list.push_back(
-        {"noise-unknown", 0,
-         repeats_in_other_runs(m)
-             ? "The rows repeat targets in other runs, but each run counts as a set-up of its own, "
-               "so the noise of the readings is unknown. If the set-up did not change between the "
-               "runs, add a column setup with one label (import table: --set \"setup=1\")."
-             : "The readings have no standard uncertainty u and no repeats, so the fit cannot "
-               "distinguish a missing effect from the noise of the readings."});
+    list.push_back({"noise-unknown", 0,
+                    repeats_in_other_runs(m)
+                        ? kRepeatsInOtherRuns
+                        : "The readings have no standard uncertainty u and no repeats, so the fit cannot "
+                          "distinguish a missing effect from the noise of the readings."});
   if (result.check_ratio && *result.check_ratio > 1)
     list.push_back({"no-gain", *result.check_ratio,
                     fmt::format("The fit does not improve the machine: the residual of the check rows is "

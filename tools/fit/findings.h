@@ -32,4 +32,13 @@ Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurem
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);
 
+/// Without a column setup each run is a set-up of its own, and then equal targets of two runs are no repeats.
+/// True if the noise of the readings is unknown for this reason alone.
+bool repeats_in_other_runs(const model::Measurement& measurement);
+/// The explanation of this case, and what to do.
+inline constexpr const char* kRepeatsInOtherRuns =
+    "The rows repeat targets in other runs, but each run counts as a set-up of its own, so the noise of the "
+    "readings is unknown. If the set-up did not change between the runs, add a column setup with one label "
+    "(import table: --set \"setup=1\").";
+
 }  // namespace vernier::fit

@@ -174,8 +174,9 @@ text::Assurance assurance_of(const diagnose::Diagnosis& diagnosis, const model::
 }  // namespace
 
 std::string reversal_note(const effects::Candidate& candidate, const fit::ParameterEstimate& parameter) {
-  std::vector<std::string> terms;
-  for (const effects::CandidateTerm& term : candidate.terms) terms.push_back(term.text);
+  std::vector<model::ExprPtr> terms;
+  for (const effects::CandidateTerm& term : candidate.terms)
+    terms.push_back(model::parse_expression(term.text));
   return reversal_note(terms, parameter.name, parameter.value, parameter.unit);
 }
 

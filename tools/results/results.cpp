@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "tools/effects/reversal.h"
 #include "tools/fit/coverage/domain.h"
 #include "tools/fit/coverage/reach.h"
 #include "tools/fit/decisions.h"
@@ -114,7 +115,7 @@ ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m)
   ordered_json json =
       shared(result.machine, m, result.before, result.after, result.check, result.parameters.size());
   json["parameters"] = ordered_json::array();
-  const std::vector<std::string> chain = chain_texts(result.machine);
+  const std::vector<model::ExprPtr> chain = chain_expressions(result.machine);
   for (const fit::ParameterEstimate& item : result.estimates) {
     json["parameters"].push_back({{"name", item.name},
                                   {"value", item.value},
@@ -183,36 +184,23 @@ ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m)
   return json;
 }
 
-std::vector<std::string> chain_texts(const model::Machine& machine) {
-  std::vector<std::string> texts;
+std::vector<model::ExprPtr> chain_expressions(const model::Machine& machine) {
+  std::vector<model::ExprPtr> list;
   for (const auto* branch : {&machine.workpiece, &machine.tool})
     for (const model::Transform& transform : *branch)
-      texts.insert(texts.end(), transform.text.begin(), transform.text.end());
-  return texts;
+      for (std::size_t i = 0; i < transform.dof_count(); ++i) list.push_back(transform.dof[i]);
+  return list;
 }
 
-std::string reversal_note(const std::vector<std::string>& terms, const std::string& name, double value,
+std::string reversal_note(const std::vector<model::ExprPtr>& terms, const std::string& name, double value,
                           const std::string& unit) {
-  const std::string sense = format::entry_of(format::AxisQuantity::kSense).prefix;
-  const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-  for (const std::string& term : terms) {
-    std::string text = term;
-    std::erase(text, ' ');
-    const std::string start = name + "*" + sense;
-    const std::size_t at = text.find(start);
-    if (at == std::string::npos) continue;
-    std::size_t end = at + start.size();
-    while (end < text.size() && in_name(text[end])) ++end;
-    const bool alone = end == text.size() || text[end] == '+' || text[end] == '-' || text[end] == ')';
-    const bool whole = at == 0 || text[at - 1] == '+' || text[at - 1] == '(';
-    if (!alone || !whole) continue;
-    const bool length = unit == "mm";
-    if (!length && unit != "deg") continue;
-    return fmt::format("coefficient of {}; reversal value B = {:.4g} {}",
-                       text.substr(at + name.size() + 1, end - at - name.size() - 1),
-                       2 * value * (length ? maths::kUmPerMm : maths::kArcsecPerDeg),
-                       length ? "um" : "arcsec");
-  }
+  const bool length = unit == "mm";
+  if (!length && unit != "deg") return {};
+  for (const model::ExprPtr& term : terms)
+    if (const auto found = effects::direction_coefficient(*term, name))
+      return fmt::format("coefficient of {}; reversal value B = {:.4g} {}", found->direction,
+                         2 * found->factor * value * (length ? maths::kUmPerMm : maths::kArcsecPerDeg),
+                         length ? "um" : "arcsec");
   return {};
 }
 

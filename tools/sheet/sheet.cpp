@@ -167,11 +167,41 @@ double agreement(const std::vector<Line>& lines, char separator) {
   return lines.empty() ? 0 : static_cast<double>(best) / static_cast<double>(lines.size());
 }
 
+/// True for a line of numbers with decimal commas and blanks between them: "100,0000   -0,0032". Each comma
+/// is inside a number that has blanks on both sides.
+bool is_blank_separated(const std::string& line) {
+  std::size_t numbers = 0, commas = 0;
+  for (const std::string& word : text::words_in(line, " \t")) {
+    const bool comma = word.find(',') != std::string::npos;
+    const bool number = plain_number(word, true).has_value();
+    if (comma && !number) return false;
+    numbers += number ? 1 : 0;
+    commas += comma ? 1 : 0;
+  }
+  return numbers >= 2 && commas > 0;
+}
+
+/// True if the commas of the lines are decimal signs, and blanks separate the columns.
+bool has_decimal_commas_and_blanks(const std::vector<Line>& lines) {
+  std::size_t with_commas = 0, aligned = 0;
+  for (const Line& line : lines) {
+    const auto comma = line.text.find(',');
+    const bool number =
+        comma != std::string::npos && line.text.find_first_of("0123456789") != std::string::npos;
+    with_commas += number ? 1 : 0;
+    aligned += number && is_blank_separated(line.text) ? 1 : 0;
+  }
+  // A title may have a comma too.
+  return aligned >= 2 && 10 * aligned >= 8 * with_commas && 2 * aligned >= lines.size();
+}
+
 char separator_of_lines(const std::vector<Line>& lines) {
   constexpr double kMostAgree = 0.6;  // titles and remarks above a table are lines too
   char best = ' ';
   double most = 0;
+  const bool blanks = has_decimal_commas_and_blanks(lines);
   for (const char separator : {'\t', ';', ',', '|'}) {
+    if (separator == ',' && blanks) continue;
     const double agree = agreement(lines, separator);
     if (agree >= kMostAgree) return separator;
     if (agree > most) {
@@ -223,6 +253,23 @@ std::size_t usual_width(const std::vector<std::vector<std::string>>& rows) {
   return most == count.end() ? 0 : most->first;
 }
 
+bool is_a_number(const std::string& cell) {
+  return plain_number(cell, true).has_value() || plain_number(cell, false).has_value();
+}
+
+/// True for a title above the headings of text that is separated by blanks: no number, no row of numbers
+/// directly below, and fewer words than columns; or one cell above a line of aligned cells.
+bool is_title(const std::vector<Line>& lines, const std::vector<std::vector<std::string>>& rows,
+              std::size_t row, std::size_t width) {
+  const auto numbers = [&](std::size_t at) {
+    return static_cast<std::size_t>(std::count_if(rows[at].begin(), rows[at].end(), is_a_number));
+  };
+  if (row + 1 >= rows.size() || numbers(row) > 0 || 2 * numbers(row + 1) >= rows[row + 1].size())
+    return false;
+  return rows[row].size() < width ||
+         (aligned_cells(lines[row].text).size() == 1 && aligned_cells(lines[row + 1].text).size() == width);
+}
+
 void split(Sheet& sheet, const std::vector<Line>& lines) {
   std::vector<std::vector<std::string>> rows;
   for (const Line& line : lines) {
@@ -236,10 +283,13 @@ void split(Sheet& sheet, const std::vector<Line>& lines) {
               std::to_string(kMostColumns)));
   }
   const std::size_t width = usual_width(rows);
+  std::vector<bool> titles;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    titles.push_back(sheet.separator == ' ' && is_title(lines, rows, i, width));
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const Line& line = lines[i];
     std::vector<std::string>& cells = rows[i];
-    if (sheet.separator == ' ' && cells.size() > width)
+    if (sheet.separator == ' ' && (cells.size() > width || titles[i]))
       if (std::vector<std::string> aligned = aligned_cells(line.text); aligned.size() <= width)
         cells = std::move(aligned);
     if (is_blank(cells)) continue;
@@ -258,29 +308,67 @@ void drop_empty_columns(Sheet& sheet) {
     for (auto& row : sheet.rows) row.pop_back();
 }
 
-/// Negative numbers in brackets, as accounting formats write them: "(4.5)" in a row and a column with other
-/// numbers becomes "-4.5", with a note. A row of bracketed numbers alone numbers the columns.
+/// The text in the brackets of a cell; empty for other cells.
+std::string in_brackets(const std::string& cell) {
+  return cell.size() > 2 && cell.front() == '(' && cell.back() == ')'
+             ? text::trimmed(cell.substr(1, cell.size() - 2))
+             : std::string();
+}
+
+bool is_number_in_brackets(const std::string& cell) {
+  const std::string value = in_brackets(cell);
+  return !value.empty() && value.front() >= '0' && value.front() <= '9' && is_a_number(value);
+}
+
+/// True if the numbers in brackets among these cells are in a series of whole numbers, one after the other:
+/// "(1)", "(2)", "(3)". Such numbers count columns or rows. `cells`: without empty ones.
+bool count_on(const std::vector<std::string>& cells) {
+  std::optional<std::size_t> before;
+  for (const std::string& cell : cells) {
+    const auto count = text::parse_count(in_brackets(cell));
+    if (!count || (before && *count != *before + 1)) return false;
+    before = count;
+  }
+  return true;
+}
+
+/// True if the numbers in brackets of a column are values: other numbers of the column have no brackets, or
+/// the numbers in brackets do not count the rows.
+bool has_accounting_values(const Sheet& sheet, std::size_t k) {
+  std::vector<std::string> bracketed;
+  for (const auto& row : sheet.rows) {
+    if (is_a_number(row[k])) return true;
+    if (is_number_in_brackets(row[k])) bracketed.push_back(row[k]);
+  }
+  return !count_on(bracketed);
+}
+
+/// True for a row of values: one of them has no brackets, or all have brackets and do not count the columns.
+/// A row with words alone beside them is a heading.
+bool has_values(const std::vector<std::string>& row) {
+  if (std::any_of(row.begin(), row.end(), is_a_number)) return true;
+  std::vector<std::string> bracketed;
+  for (const std::string& cell : row) {
+    if (cell.empty()) continue;
+    if (!is_number_in_brackets(cell)) return false;
+    bracketed.push_back(cell);
+  }
+  return !count_on(bracketed);
+}
+
+/// Negative numbers in brackets, as accounting formats write them: "(4.5)" becomes "-4.5", with a note.
 void read_accounting(Sheet& sheet) {
-  const auto number = [](const std::string& cell) {
-    return plain_number(cell, true).has_value() || plain_number(cell, false).has_value();
-  };
-  const auto inside = [](const std::string& cell) {
-    return cell.size() > 2 && cell.front() == '(' && cell.back() == ')'
-               ? text::trimmed(cell.substr(1, cell.size() - 2))
-               : std::string();
-  };
   std::size_t read = 0;
   std::string first;
+  std::map<std::size_t, bool> of_values;  // by the column
   for (auto& row : sheet.rows) {
-    if (std::none_of(row.begin(), row.end(), number)) continue;
+    if (!has_values(row)) continue;
     for (std::size_t k = 0; k < row.size(); ++k) {
-      const std::string value = inside(row[k]);
-      if (value.empty() || value.front() < '0' || value.front() > '9' || !number(value)) continue;
-      if (std::none_of(sheet.rows.begin(), sheet.rows.end(),
-                       [&](const auto& other) { return number(other[k]); }))
-        continue;
+      if (!is_number_in_brackets(row[k])) continue;
+      if (!of_values.contains(k)) of_values[k] = has_accounting_values(sheet, k);
+      if (!of_values[k]) continue;
       if (++read == 1) first = row[k];
-      row[k] = "-" + value;
+      row[k] = "-" + in_brackets(row[k]);
     }
   }
   if (read > 0)

@@ -147,7 +147,7 @@ TEST_F(Pages, FirstHourRunsAsPrinted) {
   for (const char* figure :
        {"Windows-1252, columns separated by semicolon, decimal comma", "92.120 um", "tolerance 50: not met",
         "25.750 um", "31.245 um", "12.194 um", "verdict: missing-effect",
-        "X carriage: backlash -23.7 +- 0.4 um", "fit rows 6.701 um", "check rows 8.848 um",
+        "X carriage: backlash, reversal value B -23.7 +- 0.4 um", "fit rows 6.701 um", "check rows 8.848 um",
         "check rows 1.355 um", "verdict: consistent", "safe to run: every rule of the safety sheet is met"})
     EXPECT_NE(said_.find(figure), std::string::npos) << figure << " is not what the commands print\n"
                                                      << said_;

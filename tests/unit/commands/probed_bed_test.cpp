@@ -114,6 +114,9 @@ TEST_F(ProbedBed, AReversalHasOneValueInFitAndDiagnose) {
   EXPECT_THAT(said, HasSubstr("coefficient of dirX; reversal value B = 12 um"));
   ASSERT_EQ(run("vernier diagnose x.xml x.csv -o d.html"), 0) << said;
   EXPECT_THAT(said, HasSubstr("(coefficient of dirX; reversal value B = 12 um)"));
+  EXPECT_THAT(said, HasSubstr("X carriage: backlash, reversal value B 12.0"));
+  ASSERT_EQ(run("vernier effects backlash"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("reversal value B = 2 k"));
 }
 
 TEST_F(ProbedBed, AnExistingMachineFileGetsAnArtefact) {

@@ -10,6 +10,7 @@
 
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/outliers.h"
+#include "tools/fit/findings.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/machine_reader.h"
 
@@ -403,6 +404,27 @@ TEST(Verdict, WithoutUAndRepeatsNothingStatesTheNoise) {
     EXPECT_EQ(answer.explanation.find("The residual is noise") == 0, with_u) << answer.explanation;
     EXPECT_EQ(answer.explanation.find("have no u and no repeats") == std::string::npos, with_u);
   }
+}
+
+TEST(Verdict, RepeatsInOtherRunsHaveTheRemedyOfTheFit) {
+  // GIVEN runs that repeat their targets, without a column setup
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string without = "X[mm],x[mm],run\n", with = "X[mm],x[mm],run,setup\n";
+  for (int run = 1; run <= 5; ++run)
+    for (int i = 0; i < 12; ++i) {
+      const std::string row = fmt::format("{},{:.6f},{}", 40 * i, 40 * i + noise(random), run);
+      without += row + "\n";
+      with += row + ",1\n";
+    }
+  const auto explanation = [&](const std::string& text) {
+    return diagnose::diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine)).explanation;
+  };
+  // THEN the diagnosis explains the unknown noise as the fit does, and the column makes the noise known
+  EXPECT_NE(explanation(without).find(fit::kRepeatsInOtherRuns), std::string::npos) << explanation(without);
+  EXPECT_EQ(explanation(without).find("no repeats"), std::string::npos);
+  EXPECT_EQ(explanation(with).find("set-up of its own"), std::string::npos) << explanation(with);
 }
 
 TEST(Verdict, ChanceOfSuccessiveRowsIsThatOfTheRunsTest) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <pugixml.hpp>
 #include <random>
 #include <sstream>
@@ -10,6 +11,7 @@
 #include "tools/create/urdf.h"
 #include "tools/exchange/urdf_arm.h"
 #include "tools/model/chain/chain.h"
+#include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
 
@@ -84,6 +86,24 @@ TEST(Urdf, JointsMultipliedTogetherAreTheChain) {
   }
   EXPECT_LT(worst, 1e-6);  // twelve digits of 0.5 m
   EXPECT_LT(turned, 1e-9);
+}
+
+TEST(Urdf, NamesTheJointsThatTheFitDidNotDetermine) {
+  Machine machine = parse_machine(arm(), "arm.xml");
+  EXPECT_EQ(exchange::urdf_arm(machine, make_states(1, machine)).text.find("do not determine"),
+            std::string::npos);
+  auto fitted = std::make_shared<FitRecord>();
+  fitted->parameters = {"o", "a", "k"};
+  fitted->origins = {"data", "convention", "prior"};
+  machine.fitted = fitted;
+  const exchange::UrdfFile file = exchange::urdf_arm(machine, make_states(1, machine));
+  // `a` is in the transforms of J1, J2, S and of the tool.
+  EXPECT_EQ(exchange::joints_text(file.undetermined), "J1 (a), J2 (a), S (a), tool (a)");
+  EXPECT_NE(file.text.find("<!-- The readings of the fit do not determine these joints completely"),
+            std::string::npos);
+  EXPECT_NE(file.text.find("J1 (a), J2 (a), S (a), tool (a)."), std::string::npos);
+  pugi::xml_document document;
+  EXPECT_TRUE(document.load_string(file.text.c_str()));
 }
 
 TEST(Urdf, IsReadAsTheArmOfItsAxes) {

@@ -297,6 +297,66 @@ TEST(SheetSize, ARunAndAColumnInAnotherUnitAreRefused) {
                 "um: the two columns cannot both have the right unit"));
 }
 
+TEST(SheetSize, AMeasuredPositionFarFromItsTargetIsRefusedWithItsCell) {
+  const auto table = [](const std::string& cell) {
+    std::string text = "Soll X [mm];Ist X [mm]\n";
+    for (int x = 0; x <= 900; x += 50)
+      text += std::to_string(x) + ";" +
+              (x == 450 ? cell : std::to_string(x) + ",00" + std::to_string(x % 7)) + "\n";
+    return text;
+  };
+  EXPECT_THAT(read(table("450,012")), StartsWith("X[mm],x[mm]\n"));
+  for (const auto& [cell, by] : {std::pair("405,012", "45 mm"), std::pair("4500,12", "4.05e+03 mm"),
+                                 std::pair("451,012", "1.01 mm")}) {
+    EXPECT_THAT(read(table(cell)),
+                StartsWith(std::string("refused: s.csv:11: \"") + cell +
+                           "\": the measured position \"Ist X [mm]\" differs from its target 450 by " + by +
+                           " in this row, in the other rows by at most"));
+    EXPECT_THAT(
+        read(table(cell)),
+        HasSubstr("correct the cell or its target; if both are right, give --column \"x[mm]=Ist X [mm]\""));
+    SheetWords sure;
+    sure.columns = {"x[mm]=Ist X [mm]"};
+    EXPECT_THAT(read(table(cell), sure), AllOf(StartsWith("X[mm],x[mm]\n"), HasSubstr("note: line 11, \"")));
+  }
+}
+
+TEST(SheetSize, AChangeOfTheSetUpAndATurnOfTheTableAreNoWrongCells) {
+  // Half of the rows are in another set-up: their positions differ by the offset of the instrument.
+  std::string offsets = "Soll X [mm];Ist X [mm]\n", turn = "C soll [deg];C ist [deg]\n";
+  for (int x = 0; x <= 900; x += 50)
+    offsets += std::to_string(x) + ";" + std::to_string(x + (x > 400 ? 7 : 0)) + ",002\n";
+  for (int c = 0; c < 360; c += 30)
+    turn += std::to_string(c) + ";" + (c == 0 ? "359,999" : std::to_string(c)) + "\n";
+  EXPECT_THAT(read(offsets), StartsWith("X[mm],x[mm]\n"));
+  EXPECT_THAT(read(turn), StartsWith("C[deg],rz[deg]\n"));
+  // The point moves with the rotary axis too.
+  EXPECT_THAT(read("X [mm];C [deg];x [mm]\n0;0;0\n100;0;100\n200;0;200\n300;0;300\n400;0;400\n500;0;500\n"
+                   "600;0;600\n700;0;700\n800;0;800\n0;90;-30\n"),
+              StartsWith("X[mm],C[deg],x[mm]\n"));
+}
+
+TEST(SheetSize, OneOptionAcceptsTheDeviationsOfAllColumnsOfARobot) {
+  std::string table = "X [mm];Y [mm];dX [mm];dY [mm]\n";
+  for (int i = 0; i < 8; ++i)
+    table += std::to_string(800 + 50 * i) + ";" + std::to_string(37 * i * i % 500) + ";" +
+             std::to_string(6 + i % 3) + "," + std::to_string(i) + ";" + std::to_string(-7 - i % 4) + ",5\n";
+  EXPECT_THAT(read(table), HasSubstr("(for all columns of this machine: --deviation 20mm)"));
+  SheetWords words;
+  words.deviations = {"20mm"};
+  EXPECT_THAT(read(table, words), AllOf(StartsWith("X[mm],Y[mm],x[mm],y[mm]\n"), Not(HasSubstr("note"))));
+  words.deviations = {"5 mm"};
+  EXPECT_THAT(read(table, words), HasSubstr("half of the deviations are larger than"));
+  words.deviations = {"20"};
+  EXPECT_THAT(read(table, words), HasSubstr("or a limit such as 20mm"));
+  // With rotary joints, 6 mm are usual for a robot.
+  std::string joints = "J1 [deg];J2 [deg];J3 [deg];X [mm];dX [mm]\n";
+  for (int i = 0; i < 8; ++i)
+    joints += std::to_string(10 * i) + ";" + std::to_string(-5 * i) + ";" + std::to_string(3 * i) + ";" +
+              std::to_string(800 + 50 * i) + ";" + std::to_string(6 + i % 3) + ",5\n";
+  EXPECT_THAT(read(joints), StartsWith("J1[deg],J2[deg],J3[deg],X[mm],x[mm]\n"));
+}
+
 TEST(SheetUnit, DivisionsOfADialGaugeAreUnits) {
   for (const std::string heading :
        {"Abw. X [1/100 mm]", "Abw. X [0,01 mm]", "Abw. X in 1/100 mm", "Abw. X 0,01 mm", "Abw. X Hundertstel",
@@ -342,6 +402,27 @@ TEST(SheetUnit, SizesOfRotaryAxesAreJudgedAsThoseOfLinearAxes) {
   EXPECT_THAT(read(table("C [deg];dC [arcsec]", "2000")),
               HasSubstr("refused: s.csv:5: \"dC [arcsec]\": the deviation 0.556 deg in this row is more than "
                         "100 times as large as the other ones"));
+}
+
+TEST(SheetUnit, DegreesUnderRadAndRadiansUnderDegAreRefused) {
+  const std::string degrees = "C [rad];dC [arcsec]\n0;1\n90;2\n180;3\n270;2\n360;1\n";
+  EXPECT_THAT(read(degrees),
+              StartsWith("refused: s.csv:1: \"C [rad]\": the positions go to 360, 57.3 turns in "
+                         "rad: degrees under a heading in rad; correct the unit of the heading "
+                         "to [deg]; if [rad] is right, give --column \"C[rad]=C [rad]\""));
+  const std::string few = "C [rad];dC [arcsec]\n0;1\n3;2\n6;3\n9;2\n";
+  EXPECT_THAT(read(few), HasSubstr("the positions go to 9, and all are whole numbers: degrees"));
+  SheetWords sure;
+  sure.columns = {"C[rad]=C [rad]"};
+  EXPECT_THAT(read(few, sure), StartsWith("C[rad],rz[deg]\n"));
+  const std::string radians = "C [deg];dC [arcsec]\n0;1\n0,524;2\n1,047;3\n1,571;2\n2,094;1\n6,283;1\n";
+  EXPECT_THAT(
+      read(radians),
+      HasSubstr("the positions go to 6.283, and all are fractions of a half turn in rad: radians under a "
+                "heading in deg; correct the unit of the heading to [rad]"));
+  EXPECT_THAT(read("C [deg];dC [arcsec]\n0;1\n0,5;2\n1;3\n1,5;2\n2;1\n6;1\n"), StartsWith("C[deg],"));
+  EXPECT_THAT(read("C [rad];dC [arcsec]\n0;1\n1,5708;2\n3,1416;3\n4,7124;2\n6,2832;1\n"),
+              StartsWith("C[rad],"));
 }
 
 TEST(SheetUnit, OneDirectionInAnotherUnitIsRefused) {
@@ -406,6 +487,45 @@ TEST(SheetDirection, UpInAHeadingOfATableWithDecreasingPositionsIsNoted) {
       HasSubstr("note: \"up [um]\" is read as the approach in the direction of increasing positions"));
 }
 
+TEST(SheetDirection, OneDirectionInAllRowsOfAMotionOutAndBackIsRefusedUnlessTheUserAssignsIt) {
+  const std::string table =
+      "Soll X [mm];Abw. X "
+      "[um];Richtung\n0;1;+\n100;2;+\n200;3;+\n300;4;+\n300;7;+\n200;6;+\n100;5;+\n0;4;+\n";
+  EXPECT_THAT(read(table),
+              StartsWith("refused: s.csv:7: \"Richtung\": all rows have the same direction (+), and the "
+                         "positions of X go the other way in lines 7, 8, 9; correct the directions in these "
+                         "rows, or leave the column out (--leave \"Richtung\")"));
+  SheetWords given;
+  given.columns = {"dirX=Richtung"};
+  EXPECT_THAT(read(table, given), AllOf(StartsWith("X[mm],x[mm],dirX\n0,0.001,1\n"),
+                                        HasSubstr("note: \"Richtung\": all rows have the same direction")));
+  // Each run goes out alone; a second axis moves: each row may be approached from one side.
+  EXPECT_THAT(read("Lauf;X [mm];dX [um];Richtung\n1;0;1;+\n1;1;2;+\n1;2;3;+\n2;0;1;+\n2;1;2;+\n2;2;3;+\n"),
+              Not(HasSubstr("direction")));
+  EXPECT_THAT(
+      read("X [mm];Y [mm];dX [um];Richtung X\n0;0;1;+\n1;0;2;+\n2;0;3;+\n2;9;3;+\n1;9;2;+\n0;9;1;+\n"),
+      HasSubstr("note: \"Richtung X\": all rows have the same direction (+), and the positions of X go the "
+                "other way in lines 6, 7; the directions are used as written"));
+}
+
+TEST(SheetDirection, AChangeMarkedSomeRowsBesideTheTurnIsRefusedWithTheRows) {
+  const auto table = [](int first_back) {
+    std::string text = "Soll X [mm];Abw. X [um];Richtung\n";
+    int row = 0;
+    for (const int x : {0, 100, 200, 300, 400, 500, 500, 400, 300, 200, 100, 0})
+      text += std::to_string(x) + ";1;" + (row++ < first_back ? "+" : "-") + "\n";
+    return text;
+  };
+  EXPECT_THAT(read(table(6)), StartsWith("X[mm],x[mm],dirX\n"));
+  EXPECT_THAT(read(table(6)), Not(HasSubstr("note")));
+  EXPECT_THAT(read(table(4)),
+              StartsWith("refused: s.csv:6: \"Richtung\": the direction changes at another row than the "
+                         "motion, and the positions of X go the other way in lines 6, 7; correct"));
+  EXPECT_THAT(read(table(9)), HasSubstr("go the other way in lines 9, 10; correct"));
+  // The machine may have moved beyond the end before the one row at the turn.
+  EXPECT_THAT(read(table(5)), StartsWith("X[mm],x[mm],dirX\n"));
+}
+
 // Forms of cells.
 
 TEST(SheetCells, ALineBreakInAQuotedHeadingIsABlank) {
@@ -419,6 +539,43 @@ TEST(SheetCells, NumbersInBracketsAreNegative) {
   EXPECT_EQ(read("Soll X [mm];Abw. X [um]\n0;(1,5)\n100;3\n200;(12)\n"),
             "X[mm],x[mm]\n0,-0.0015\n100,100.003\n200,199.988\nnote: 2 cells such as \"(1,5)\" are read as "
             "negative numbers (accounting format)\n");
+}
+
+TEST(SheetCells, AColumnWhollyInBracketsIsNegative) {
+  EXPECT_EQ(read("Soll X [mm];Abw. X [um]\n0;(1,5)\n100;(3)\n200;(12,5)\n"),
+            "X[mm],x[mm]\n0,-0.0015\n100,99.997\n200,199.9875\nnote: 3 cells such as \"(1,5)\" are read as "
+            "negative numbers (accounting format)\n");
+  EXPECT_THAT(read("Soll Z [mm];Ist Z [mm]\n0;0,0010\n(50);(50,0123)\n(100);(100)\n"),
+              StartsWith("Z[mm],z[mm]\n0,0.0010\n-50,-50.0123\n-100,-100\n"));
+  EXPECT_THAT(read("Soll Z [mm];Ist Z [mm]\n(50);(50,0123)\n(100);(100,002)\n"),
+              StartsWith("Z[mm],z[mm]\n-50,-50.0123\n-100,-100.002\n"));
+  // Whole numbers in brackets alone number the rows.
+  EXPECT_THAT(read("Nr;Soll X [mm];Abw. X [um]\n(1);0;1,5\n(2);100;3\n(3);200;2\n"),
+              Not(HasSubstr("negative")));
+}
+
+TEST(SheetCells, BlanksSeparateColumnsWithDecimalCommas) {
+  EXPECT_EQ(read("Soll X [mm]   Abw. X [mm]\n  0,0000    0,0012\n100,0000   -0,0032\n200,0000    0,0040\n"),
+            "X[mm],x[mm]\n0.0000,0.0012\n100.0000,99.9968\n200.0000,200.004\n");
+  EXPECT_EQ(read("X [mm],x [mm]\n0,0.001\n100,100.002\n"), "X[mm],x[mm]\n0,0.001\n100,100.002\n");
+  // A title of several words is one cell.
+  EXPECT_THAT(
+      read("Deviations in um\nX [mm]     Run 1 fwd   Run 1 rev\n0        0.1      -3.0\n100      1.1      "
+           "-2.0\n"),
+      StartsWith("X[mm],dirX,run,x[mm]\n0,1,1,0.0001\n100,1,1,100.0011\n0,-1,1,-0.003\n"));
+}
+
+TEST(SheetCells, ATitleStatesTheUnitOfTheDeviations) {
+  const std::string rows = "Soll X [mm];Abweichung X\n0;1,5\n100;-2\n200;3\n";
+  const std::string values = "X[mm],x[mm]\n0,0.0015\n100,99.998\n200,200.003\n";
+  EXPECT_EQ(read("Abweichungen in \u00b5m;\n" + rows),
+            values +
+                "note: the unit of the deviations is [um], by the title \"Abweichungen in \u00b5m\"; if this "
+                "is wrong, give --unit\n");
+  EXPECT_THAT(read("Positionen in mm, Abweichungen in \u00b5m;\n" + rows), StartsWith(values));
+  // The unit belongs to the positions, or two titles contradict each other.
+  EXPECT_THAT(read("Abweichungen an den Positionen in mm;\n" + rows), HasSubstr("no unit"));
+  EXPECT_THAT(read("Abweichungen in \u00b5m;\nAbweichung in mm;\n" + rows), HasSubstr("no unit"));
 }
 
 TEST(SheetRemedy, ADeviationWithoutAPositionNamesTheOptionThatReadsIt) {

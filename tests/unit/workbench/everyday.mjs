@@ -399,6 +399,12 @@ async function looks(page) {
     await page.until(`document.getElementById('sheet-message')?.textContent.includes(${JSON.stringify(wanted)})`, wanted);
     assert.ok(await page.evaluate("document.querySelectorAll('#sheet-columns tbody tr').length >= 2"), `${name}: its columns`);
   }
+  // A doubtful unit is confirmed without a change of the file.
+  await page.drop([{ name: 'sure.csv', text: 'Soll X [mm];Abw. X [mm]\n0;0,0\n100;3,2\n200;5,4\n300;9,1\n400;13,9\n' }]);
+  await words(page, '#sheet-message', 'half of the deviations');
+  assert.ok(!(await text(page, '#sheet-message')).includes('--'), await text(page, '#sheet-message'));
+  await page.click('[data-confirms="Abw. X [mm]"]');
+  await page.until("!document.getElementById('sheet-message') && !document.getElementById('do-import').disabled", 'the confirmed table');
   // The name of the folder is whole.
   assert.ok(
     await page.evaluate("(() => { const one = document.querySelector('.folder'); return one.scrollWidth <= one.clientWidth; })()"),

@@ -77,6 +77,21 @@ TEST(Sheets, APreviewIsWhatTheImportDoes) {
   EXPECT_TRUE(sheet_preview("Pos;Anzeige\n0,0;1,5\n10,0;2,5\n", "dial.csv", words)["message"].is_null());
 }
 
+TEST(Sheets, ADoubtfulUnitIsConfirmedByTheMeaningOfItsColumn) {
+  const std::string table = "Soll X [mm];Abw. X [mm]\n0;0,0\n100;3,2\n200;5,4\n300;9,1\n400;13,9\n";
+  const auto refused = sheet_preview(table, "t.csv", {});
+  EXPECT_NE(refused["message"].get<std::string>().find("half of the deviations"), std::string::npos);
+  EXPECT_FALSE(refused["columns"][0].contains("doubt"));
+  const auto& column = refused["columns"][1];
+  EXPECT_NE(column["doubt"].get<std::string>().find("half of the deviations"), std::string::npos);
+  // The button of the page states what the column already is.
+  SheetWords words;
+  words.deviations = {column["name"].get<std::string>() + "[" + column["unit"].get<std::string>() + "]=2"};
+  const auto confirmed = sheet_preview(table, "t.csv", words);
+  EXPECT_TRUE(confirmed["message"].is_null()) << confirmed["message"];
+  EXPECT_FALSE(confirmed["columns"][1].contains("doubt"));
+}
+
 TEST(Sheets, WordsOfARequestAreTextsAndLists) {
   EXPECT_EQ(sheet_words(json{{"column", {"X[mm]=1"}}, {"skip", 2}}).skip, 2u);
   const importer::SheetWords words = sheet_words(json{{"fill", {"T"}}, {"one-motion", true}});

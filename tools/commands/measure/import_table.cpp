@@ -191,7 +191,8 @@ void add_table_kind(CLI::App& kind) {
       ->allow_extra_args(false);
   kind.add_option("--deviation", arguments->words.deviations,
                   "column with deviations, \"X[um]=Abweichung\": the measured position is the position of X "
-                  "plus this deviation; repeat the option for each column")
+                  "plus this deviation; repeat the option for each column. A size alone (20mm, 2deg) is the "
+                  "largest plausible deviation of all columns")
       ->allow_extra_args(false);
   kind.add_option("--leave", arguments->words.left,
                   "heading of a column that the command ignores; repeat the option for each column")

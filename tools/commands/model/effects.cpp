@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -42,6 +43,9 @@ void print_effect(std::FILE* out, const effects::Effect& effect) {
              effect.id, effect.title, effect.formula, effect.signature, effect.exposed_by);
   for (const std::string& other : effect.impostors) fmt::print(out, " {}", other);
   fmt::print(out, "\n");
+  if (effect.size && !effect.size->name.empty())
+    fmt::print(out, "  size         {} = {} {}\n", effect.size->name, effect.size->factor,
+               fmt::join(effect.size->unknowns, " "));
   for (const effects::EffectForm& form : effect.forms)
     fmt::print(out, "  form {:<12} at {:<7} {}\n", form.label, effects::place_name(form.place), form.term);
 }

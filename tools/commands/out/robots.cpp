@@ -23,9 +23,18 @@ void export_urdf(const ExchangeArguments& arguments) {
              "difference from the machine file at {} poses: tool point up to {:.3g} um, tool direction up to "
              "{:.3g} urad\n",
              file.positions, file.worst_um, file.worst_urad);
+  Json undetermined = Json::array();
+  for (const exchange::UndeterminedJoint& one : file.undetermined)
+    undetermined.push_back({{"joint", one.joint}, {"parameters", one.parameters}});
+  if (!file.undetermined.empty())
+    fmt::print(human_stream(arguments.json),
+               "not determined by the readings of the fit, values set by convention or prior: {}; do not use "
+               "the values of one of these joints alone\n",
+               exchange::joints_text(file.undetermined));
   finish(machine, arguments, "urdf", left, files, {}, true,
          {{"errors",
-           {{"positions", file.positions}, {"after_um", file.worst_um}, {"after_urad", file.worst_urad}}}});
+           {{"positions", file.positions}, {"after_um", file.worst_um}, {"after_urad", file.worst_urad}}},
+          {"undetermined_joints", undetermined}});
 }
 
 }  // namespace

@@ -12,9 +12,7 @@
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/maths/median.h"
-#include "tools/sheet/sheet_number.h"
 #include "tools/sheet/unit_factor.h"
-#include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -29,6 +27,10 @@ struct Limits {
 };
 /// Errors of machine tools are below 0.5 mm, those of most robots below 2 mm.
 constexpr Limits kLengths = {5, 0.5, 2, 1e-4};
+/// Uncalibrated robots are wrong by up to 12 mm. A table of a robot has the positions of several rotary
+/// joints.
+constexpr Limits kLengthsOfRobots = {15, 0.5, 5, 1e-4};
+constexpr std::size_t kFewestJoints = 3;
 /// Rotary tables are right within 1 arcmin, worn ones within 0.1 deg; autocollimators resolve 0.01 arcsec.
 constexpr Limits kAngles = {1, 0.1, 0.2, 2.5e-6};
 /// Deviations that are a larger share of the travel: a scale error of a twentieth is no error of a machine
@@ -48,31 +50,34 @@ struct Sizes {
   std::vector<double> size;       // absolute values
   std::vector<std::size_t> line;  // their lines in the file
   double median = 0, largest = 0;
-  const Limits& limits() const { return angle ? kAngles : kLengths; }
+  Limits limits = kLengths;
+  bool stated = false;  // true: the user stated the largest plausible deviation
 };
 
-std::optional<double> number_at(const sheet::Sheet& sheet, std::size_t row, std::size_t column) {
-  const auto number = sheet::plain_number(sheet.rows[row][column], sheet.decimal_comma);
-  return number ? text::parse_number(*number) : std::nullopt;
-}
-
-/// The unit of a column of lengths or angles.
-std::optional<format::Unit> sized_unit(const SizedColumn& column) {
-  const auto unit = format::find_unit(column.unit);
-  const bool sized =
-      unit && (unit->dimension == format::Dimension::kLength || unit->dimension == format::Dimension::kAngle);
-  return !column.unit.empty() && sized ? unit : std::nullopt;
+/// Limits of one quantity for this table.
+Limits limits_of(const std::vector<SizedColumn>& columns, bool angle, const PlausibleDeviation& plausible) {
+  const auto joints = std::count_if(columns.begin(), columns.end(), [](const SizedColumn& one) {
+    return one.axis && one.use == SizedColumn::Use::kPosition && sized_unit(one) &&
+           sized_unit(one)->dimension == format::Dimension::kAngle;
+  });
+  const bool robot = static_cast<std::size_t>(joints) >= kFewestJoints;
+  Limits limits = angle ? kAngles : robot ? kLengthsOfRobots : kLengths;
+  if (const auto most = angle ? plausible.deg : plausible.mm) limits.surely = limits.unusual = *most;
+  return limits;
 }
 
 std::optional<Sizes> sizes_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
-                              const std::vector<SizedColumn>& columns, std::size_t k) {
+                              const std::vector<SizedColumn>& columns, std::size_t k,
+                              const PlausibleDeviation& plausible) {
   const auto unit = sized_unit(columns[k]);
   if (columns[k].use != SizedColumn::Use::kDeviation || !unit) return std::nullopt;
   Sizes sizes;
   sizes.column = k;
   sizes.angle = unit->dimension == format::Dimension::kAngle;
+  sizes.limits = limits_of(columns, sizes.angle, plausible);
+  sizes.stated = (sizes.angle ? plausible.deg : plausible.mm).has_value();
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
-    if (const auto value = number_at(sheet, row, k)) {
+    if (const auto value = cell_number(sheet, row, k)) {
       sizes.size.push_back(std::abs(*value) * unit->factor);
       sizes.line.push_back(sheet.line[row]);
     }
@@ -80,13 +85,6 @@ std::optional<Sizes> sizes_of(const sheet::Sheet& sheet, const sheet::SheetTable
   sizes.median = maths::median(sizes.size);
   sizes.largest = *std::max_element(sizes.size.begin(), sizes.size.end());
   return sizes;
-}
-
-std::string size_text(double mm, bool angle = false) {
-  if (angle) return mm < 0.01 ? fmt::format("{:.3g} arcsec", mm * 3600) : fmt::format("{:.3g} deg", mm);
-  return mm < 1e-4   ? fmt::format("{:.3g} nm", mm * 1e6)
-         : mm < 0.01 ? fmt::format("{:.3g} um", mm * 1e3)
-                     : fmt::format("{:.3g} mm", mm);
 }
 
 /// What the user does about a wrong unit, and how the unit is confirmed if it is right.
@@ -119,7 +117,7 @@ double travel_along(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                     const std::vector<SizedColumn>& columns, std::size_t position) {
   std::vector<double> at;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
-    if (const auto value = number_at(sheet, row, position))
+    if (const auto value = cell_number(sheet, row, position))
       at.push_back(*value * sized_unit(columns[position])->factor);
   if (at.empty()) return 0;
   const auto [least, most] = std::minmax_element(at.begin(), at.end());
@@ -131,7 +129,17 @@ struct SizeVerdict {
   bool refuse = false;
   std::size_t line = 0;  // 0: of the heading
   std::string words;
+  bool too_large = false;  // true: a larger limit of plausible deviations would accept the column
 };
+
+/// The option that accepts the deviations of all columns: their largest one, rounded up.
+std::string limit_remedy(const std::vector<Sizes>& all, bool angle) {
+  double largest = 0;
+  for (const Sizes& one : all) largest = one.angle == angle ? std::max(largest, one.largest) : largest;
+  const double digit = std::pow(10, std::floor(std::log10(largest)));
+  return fmt::format(" (for all columns of this machine: --deviation {:.6g}{})",
+                     digit * std::ceil(largest / digit), angle ? "deg" : "mm");
+}
 
 SizeVerdict beside_other_rows(const Sizes& sizes) {
   std::vector<double> sorted = sizes.size;
@@ -140,7 +148,7 @@ SizeVerdict beside_other_rows(const Sizes& sizes) {
   for (std::size_t i = 1; i < sorted.size(); ++i) {
     // A few small values among large ones are near a zero of the error.
     const bool usual = i >= 2 && 4 * i >= sorted.size();
-    if (!usual || sorted[i] < sizes.limits().visible || sorted[i] < kGap * sorted[i - 1]) continue;
+    if (!usual || sorted[i] < sizes.limits.visible || sorted[i] < kGap * sorted[i - 1]) continue;
     const auto at =
         std::find_if(sizes.size.begin(), sizes.size.end(), [&](double one) { return one >= sorted[i]; });
     const std::size_t row = static_cast<std::size_t>(at - sizes.size.begin()), many = sorted.size() - i;
@@ -157,20 +165,21 @@ SizeVerdict beside_other_rows(const Sizes& sizes) {
 SizeVerdict beside_travel(const Sizes& sizes, double travel, const std::string& axis) {
   const std::string along =
       travel > 0 ? fmt::format(", and {} moves by {}", axis, size_text(travel, sizes.angle)) : "";
-  const bool share =
-      travel > 0 && sizes.median > kImplausibleShare * travel && sizes.median > sizes.limits().visible;
-  if (sizes.median > sizes.limits().surely || share)
+  const bool share = !sizes.stated && travel > 0 && sizes.median > kImplausibleShare * travel &&
+                     sizes.median > sizes.limits.visible;
+  if (sizes.median > sizes.limits.surely || share)
     return {true, 0,
             fmt::format("half of the deviations are larger than {}{}: no machine has such errors",
-                        size_text(sizes.median, sizes.angle), along)};
-  if (sizes.largest > sizes.limits().unusual)
+                        size_text(sizes.median, sizes.angle), along),
+            true};
+  if (sizes.largest > sizes.limits.unusual)
     return {false, 0,
             fmt::format("the deviations are as large as {}{}: unusual for a machine",
                         size_text(sizes.largest, sizes.angle), along)};
-  if (sizes.largest > 0 && sizes.largest < sizes.limits().resolution)
+  if (sizes.largest > 0 && sizes.largest < sizes.limits.resolution)
     return {false, 0,
             fmt::format("all deviations are below {}, less than an instrument resolves",
-                        size_text(sizes.limits().resolution, sizes.angle))};
+                        size_text(sizes.limits.resolution, sizes.angle))};
   return {};
 }
 
@@ -181,7 +190,7 @@ SizeVerdict beside_other_groups(const sheet::Sheet& sheet, const sheet::SheetTab
                                 std::size_t of_group, const char* what) {
   std::map<std::string, Sizes> groups;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const auto value = number_at(sheet, row, sizes.column);
+    const auto value = cell_number(sheet, row, sizes.column);
     // Rows that are exactly 0 show no size.
     if (!value || *value == 0) continue;
     Sizes& one = groups[sheet.rows[row][of_group]];
@@ -225,19 +234,23 @@ bool exchanged(const std::vector<SizedColumn>& columns, std::size_t deviation, s
 }  // namespace
 
 std::vector<SizeDoubt> judge_deviation_sizes(sheet::Sheet& sheet, const sheet::SheetTable& table,
-                                             const std::vector<SizedColumn>& columns) {
+                                             const std::vector<SizedColumn>& columns,
+                                             const PlausibleDeviation& plausible) {
   std::vector<SizeDoubt> doubts;
   std::vector<Sizes> all;
   for (std::size_t k = 0; k < columns.size(); ++k)
-    if (auto sizes = sizes_of(sheet, table, columns, k)) all.push_back(std::move(*sizes));
+    if (auto sizes = sizes_of(sheet, table, columns, k, plausible)) all.push_back(std::move(*sizes));
   const std::size_t heading_line = sheet.line[table.heading_row];
   const auto say = [&](std::size_t k, const SizeVerdict& verdict) {
     if (verdict.words.empty()) return;
-    const std::string text = fmt::format("{}; {}", verdict.words, unit_remedy(table, columns[k], k));
+    const bool angle =
+        columns[k].unit.empty() ? false : sized_unit(columns[k])->dimension == format::Dimension::kAngle;
+    const std::string text = fmt::format("{}; {}{}", verdict.words, unit_remedy(table, columns[k], k),
+                                         verdict.too_large ? limit_remedy(all, angle) : "");
     if (verdict.refuse && !columns[k].stated) {
       const bool known =
           std::any_of(doubts.begin(), doubts.end(), [&](const auto& one) { return one.column == k; });
-      if (!known) doubts.push_back({k, verdict.line > 0 ? verdict.line : heading_line, text});
+      if (!known) doubts.push_back({k, verdict.line > 0 ? verdict.line : heading_line, "", text});
       return;
     }
     sheet.notes.push_back(
@@ -253,6 +266,7 @@ std::vector<SizeDoubt> judge_deviation_sizes(sheet::Sheet& sheet, const sheet::S
     if (verdict.words.empty()) verdict = beside_other_rows(sizes);
     if (verdict.words.empty()) verdict = beside_travel(sizes, travel, columns[k].name);
     if (position && exchanged(columns, k, *position)) {
+      verdict.too_large = false;
       verdict.refuse = sizes.median > kImplausibleShare * travel;
       verdict.line = 0;
       verdict.words = fmt::format(
@@ -268,7 +282,7 @@ std::vector<SizeDoubt> judge_deviation_sizes(sheet::Sheet& sheet, const sheet::S
   for (const Sizes& one : all)
     for (const Sizes& other : all) {
       if (one.angle != other.angle || one.median <= 0 || other.median < kApart * one.median ||
-          one.largest > one.limits().resolution)
+          one.largest > one.limits.resolution)
         continue;
       say(one.column,
           {true, 0,

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "tools/format/columns.h"
+#include "tools/import/order/row_order.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/sheet_number.h"
@@ -228,6 +229,42 @@ void judge_runs(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector
       order, heading, columns[k].name, heading);
 }
 
+/// One direction in all rows of a motion out and back, and a change of the direction at another row than the
+/// turn of the motion: a doubt if only this axis moves and the column has its meaning by its heading,
+/// otherwise a note.
+void judge_order(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
+                 std::size_t position, std::size_t k) {
+  if (!columns[k].doubt.empty()) return;
+  const SheetWishes usual;
+  const Guess guess(usual);
+  RowOrder order{table.first_data, position, k, {}};
+  for (std::size_t other = 0; other < columns.size(); ++other)
+    if (other != position && columns[other].use == SheetColumn::Use::kColumn &&
+        (guess.is_axis(columns[other].name) || columns[other].name == format::columns::kSetup))
+      order.others.push_back(other);
+  const DirectionDoubt doubt =
+      doubt_of_directions(sheet, order, [](const std::string& cell) { return sense_of_code(code_of(cell)); });
+  if (doubt.kind == DirectionDoubt::Kind::kNone) return;
+  const bool same = doubt.kind == DirectionDoubt::Kind::kSame;
+  const std::string &heading = table.headings[k].text, &axis = columns[position].name;
+  const std::string words = fmt::format(
+      "{}, and the positions of {} go the other way in {}",
+      same ? fmt::format("all rows have the same direction ({})",
+                         sheet.rows[table.first_data][k] == "1" ? "+" : sheet.rows[table.first_data][k])
+           : std::string("the direction changes at another row than the motion"),
+      axis, lines_text(doubt.lines));
+  if (!doubt.certain || columns[k].why != "by its heading" || heading == columns[k].name) {
+    sheet.notes.push_back(fmt::format("\"{}\": {}; the directions are used as written", heading, words));
+    return;
+  }
+  columns[k].doubt_place = {sheet.file, doubt.lines.front()};
+  columns[k].doubt_word = heading;
+  columns[k].doubt = fmt::format(
+      "{}; correct the directions in these rows, or leave the column out (--leave \"{}\"); if each row "
+      "was approached in its written direction, give --column \"{}={}\"",
+      words, heading, columns[k].name, heading);
+}
+
 void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
                    std::size_t k, bool unfolded) {
   const std::string axis =
@@ -244,6 +281,7 @@ void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vec
     if (position == columns.end() || unfolded) return;
     judge_signs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
     judge_runs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
+    judge_order(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
     return;
   }
   const std::string& heading = table.headings[k].text;
@@ -269,8 +307,9 @@ void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vec
         "this column",
         heading, codes->up, axis, codes->down));
   write_directions(sheet, table, k, *codes);
-  if (position != columns.end())
-    judge_runs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
+  if (position == columns.end()) return;
+  judge_runs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
+  judge_order(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
 }
 
 /// "1+", "2 hin" or "Lauf 1 +": the run and the direction; nullopt for other texts.

@@ -16,6 +16,7 @@
 #include "tools/import/tables/doubled.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
+#include "tools/import/words/title_units.h"
 #include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/numbers.h"
@@ -408,6 +409,30 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
   }
 }
 
+/// True if the positions of an axis are angles.
+bool rotates(const std::vector<SheetColumn>& columns, const std::string& axis) {
+  return std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& one) {
+    return one.use == SheetColumn::Use::kColumn && one.name == axis && is_angle(one.unit);
+  });
+}
+
+/// A title states the unit of deviations whose headings have none: "Abweichungen in µm". The note is written
+/// by the caller, from `unit_from`.
+void take_units_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                          std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
+  if (!wishes.unit.empty()) return;  // the user states the unit
+  const TitleUnit stated = unit_of_deviations(sheet, table);
+  if (stated.unit.empty()) return;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kDeviation || !column.unit.empty() ||
+        !table.headings[k].unknown_unit.empty() || is_angle(stated.unit) != rotates(columns, column.name))
+      continue;
+    column.unit = stated.unit;
+    column.unit_from = stated.title;
+  }
+}
+
 /// The same name twice: an index column or a remark that reads like another.
 void keep_names_apart(const sheet::SheetTable& table, std::vector<SheetColumn>& columns) {
   std::map<std::string, std::size_t> seen;
@@ -466,6 +491,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
   if (!wishes.one_motion) refuse_tables_side_by_side(sheet, table, columns);
   settle_signs(sheet, table, columns, wishes);
   keep_names_apart(table, columns);
+  if (table.has_headings) take_units_of_titles(sheet, table, columns, wishes);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     SheetColumn& column = columns[k];
     if (!column.unit.empty() || wishes.unit.empty() || !wants_unit(column)) continue;

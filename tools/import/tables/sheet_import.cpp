@@ -9,6 +9,7 @@
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/import/sizes/deviation_sizes.h"
+#include "tools/import/sizes/position_sizes.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/computed_rows.h"
 #include "tools/import/tables/directions.h"
@@ -162,27 +163,57 @@ void note_rotating_frame(SheetReading& reading) {
                     rotary, columns));
 }
 
-/// Notes the divisions of dial gauges and unusual sizes; a size that only a wrong unit explains is a doubt of
-/// its column.
+/// Name of the axis whose position a column of readings has: X for x, A for rx; empty for other columns.
+std::string axis_measured(const std::string& reading) {
+  for (const char* const axis : {"X", "Y", "Z", "A", "B", "C"})
+    if (reading_of(axis) == reading) return axis;
+  return "";
+}
+
+/// Notes the divisions of dial gauges and unusual sizes; a size that only a wrong unit or a wrong cell
+/// explains is a doubt of its column.
 void judge_sizes(SheetReading& reading) {
+  const Guess guess(reading.wishes);
   std::vector<SizedColumn> sized;
   for (const SheetColumn& column : reading.columns) {
     SizedColumn one;
     if (column.use != SheetColumn::Use::kLeft) {
       const bool deviation = column.use == SheetColumn::Use::kDeviation;
-      one = {deviation ? SizedColumn::Use::kDeviation : SizedColumn::Use::kPosition, column.name, column.unit,
+      one = {deviation ? SizedColumn::Use::kDeviation : SizedColumn::Use::kPosition,
+             column.name,
+             column.unit,
              column.to_target ? text::in_small_letters(column.name) : column.name,
-             column.why == "as given" || column.why == "by the profile"};
+             column.why == "as given" || column.why == "by the profile",
+             column.why == "by the profile",
+             deviation ? "" : axis_measured(column.name),
+             !deviation && guess.is_axis(column.name)};
     }
     sized.push_back(std::move(one));
   }
   note_decimal_parts(reading.sheet, reading.table, sized);
-  for (const SizeDoubt& doubt : judge_deviation_sizes(reading.sheet, reading.table, sized)) {
+  std::vector<SizeDoubt> doubts = judge_angle_units(reading.sheet, reading.table, sized);
+  for (SizeDoubt& doubt : judge_measured_positions(reading.sheet, reading.table, sized))
+    doubts.push_back(std::move(doubt));
+  for (SizeDoubt& doubt :
+       judge_deviation_sizes(reading.sheet, reading.table, sized, reading.wishes.plausible))
+    doubts.push_back(std::move(doubt));
+  for (const SizeDoubt& doubt : doubts) {
     SheetColumn& column = reading.columns[doubt.column];
+    if (!column.doubt.empty()) continue;
     column.doubt_place = {reading.sheet.file, doubt.line};
-    column.doubt_word = reading.table.headings[doubt.column].text;
+    column.doubt_word = doubt.word.empty() ? reading.table.headings[doubt.column].text : doubt.word;
     column.doubt = doubt.text;
   }
+}
+
+/// Notes the title that stated the unit of deviations.
+void note_units(SheetReading& reading) {
+  std::set<std::string> noted;
+  for (const SheetColumn& column : reading.columns)
+    if (!column.unit_from.empty() && noted.insert(column.unit_from).second)
+      reading.sheet.notes.push_back(fmt::format(
+          "the unit of the deviations is [{}], by the title \"{}\"; if this is wrong, give --unit",
+          column.unit, column.unit_from));
 }
 
 /// Notes the texts that stated the sign, and texts of other tables that state one for themselves.
@@ -245,6 +276,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   result.columns = columns_of_sheet(result.sheet, result.table, result.wishes);
   fill_down(result);
   settle_directions(result.sheet, result.table, result.columns, result.runs > 0);
+  note_units(result);
   note_signs(result);
   note_sparse_columns(result);
   note_rotating_frame(result);

@@ -12,6 +12,7 @@
 #include "tools/format/units.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/column_values.h"
+#include "tools/import/tables/sheet_columns.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"

@@ -77,8 +77,27 @@ void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const st
   refuse_heading(table, "--column", words);
 }
 
+namespace {
+
+/// A size without a heading is the largest plausible deviation. False: `words` is no size.
+bool state_plausible(SheetWishes& wishes, const std::string& words, const text::Place& place) {
+  if (words.find('=') != std::string::npos) return false;
+  const auto size = sheet::number_and_unit(words, words.find(',') != std::string::npos);
+  const auto unit = size ? format::find_unit(size->second) : std::nullopt;
+  const auto value = size ? text::parse_number(size->first) : std::nullopt;
+  const bool length = unit && unit->dimension == format::Dimension::kLength;
+  if (!value || !unit || (!length && unit->dimension != format::Dimension::kAngle)) return false;
+  if (!(*value > 0))
+    throw text::InputError(place, words, "the largest plausible deviation must be larger than 0");
+  (length ? wishes.plausible.mm : wishes.plausible.deg) = *value * unit->factor;
+  return true;
+}
+
+}  // namespace
+
 void assign_deviation(SheetWishes& wishes, const std::string& words, const text::Place& place) {
-  const auto [left, right] = halves(words, false, place, "AXIS[unit]=HEADING");
+  if (state_plausible(wishes, words, place)) return;
+  const auto [left, right] = halves(words, false, place, "AXIS[unit]=HEADING, or a limit such as 20mm");
   SheetColumn column = target_of(left, place);
   column.use = SheetColumn::Use::kDeviation;
   wishes.assignments.push_back({right, column, place});
@@ -98,6 +117,7 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
     if (line.empty() || line.front() == '#') continue;
     const std::string key = line.substr(0, line.find(' '));
     const std::string rest = text::trimmed(line.substr(key.size()));
+    if (key == "deviation" && state_plausible(wishes, rest, place)) continue;
     if (key == "column" || key == "deviation") {
       const auto [heading, target] = halves(rest, true, place, "HEADING = name[unit]");
       SheetColumn column = target_of(target, place);
@@ -166,6 +186,8 @@ std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& ta
       text += (column.use == SheetColumn::Use::kDeviation ? "deviation " : "column ") + heading + " = " +
               format::heading(column.name, column.unit) + "\n";
   }
+  if (wishes.plausible.mm) text += fmt::format("deviation {}mm\n", *wishes.plausible.mm);
+  if (wishes.plausible.deg) text += fmt::format("deviation {}deg\n", *wishes.plausible.deg);
   for (const std::string& heading : wishes.fill) text += "fill " + heading + "\n";
   for (const MappedColumn& constant : wishes.constants)
     text += "set " + format::heading(constant.name, constant.unit) + " = " + constant.constant + "\n";

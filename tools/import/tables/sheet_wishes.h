@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/import/sizes/deviation_sizes.h"
 #include "tools/import/tables/column_map.h"
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet.h"
@@ -27,6 +28,7 @@ struct SheetColumn {
   std::string sign_text = {};    // this text; empty: the sign is clear
   text::Place doubt_place = {};  // place of a value that contradicts the unit or the direction of this column
   std::string doubt_word = {}, doubt = {};  // this word, and why the table is refused; empty: no doubt
+  std::string unit_from = {};  // title that states the unit of this deviation; empty: no title does
   std::string sign_from = {};  // text outside the headings that states the sign of this deviation clearly
 };
 
@@ -45,6 +47,7 @@ struct SheetWishes {
   std::vector<std::string> axes;  // axes of the machine if it is known, otherwise X Y Z A B C U V W J1 …
   std::vector<std::string> fill;  // headings whose empty cells have the value above them
   std::optional<bool> turned;     // sign of all deviations as the user states it: true: nominal - actual
+  PlausibleDeviation plausible;   // largest plausible deviations, as the user states them
   bool one_motion = false;        // true: columns of several axes side by side are poses of all axes together
 };
 
@@ -53,7 +56,8 @@ struct SheetWishes {
 /// the text is not an assignment.
 void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words);
 /// Adds an assignment of a deviation, for example "X[um]=Abweichung". The measured value is then the position
-/// of the axis plus this deviation.
+/// of the axis plus this deviation. A size alone ("20mm", "2deg") is the largest plausible deviation of all
+/// columns.
 void assign_deviation(SheetWishes& wishes, const std::string& words, const text::Place& place = {});
 
 /// Reads a profile: the stored settings for tables with the same form. A profile has one statement in each

@@ -16,6 +16,7 @@
 #include "tools/format/units.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
+#include "tools/import/words/title_units.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/sheet/unit_factor.h"
 #include "tools/text/error.h"
@@ -199,33 +200,6 @@ double spread_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
   return most - least;
 }
 
-/// The unit of lengths or angles in a title, in a heading without name: "Abweichungen in µm (Soll-Ist)",
-/// "Abweichung in 1/1000 mm".
-sheet::Heading unit_in(const std::string& title) {
-  // A comma in a number is no comma of the sentence.
-  const std::vector<std::string> parts = text::words_in(title, " \t;:");
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    const std::string word = parts[k].ends_with(',') ? parts[k].substr(0, parts[k].size() - 1) : parts[k];
-    const auto unit = sheet::unit_meant(word);
-    // "in" and "as" are words of a sentence.
-    if (!unit || word == "in" || word == "as" || word.size() < 2) continue;
-    const auto dimension = format::find_unit(*unit)->dimension;
-    if (dimension != format::Dimension::kLength && dimension != format::Dimension::kAngle) continue;
-    // "Zehntel" before "µm" is no tenth of a millimetre, and the unit follows.
-    std::size_t next = k + 1;
-    while (next < parts.size() && (parts[next] == "of" || parts[next] == "a" || parts[next] == "an")) ++next;
-    if (sheet::factor_at_end(word) && next < parts.size() && sheet::unit_meant(parts[next]) &&
-        parts[next] != "in")
-      continue;
-    std::string phrase;
-    for (std::size_t i = 0; i <= k; ++i) phrase += (i == 0 ? "" : " ") + (i == k ? word : parts[i]);
-    sheet::Heading heading = sheet::parse_heading(phrase);
-    if (heading.unit.empty() && heading.unknown_unit.empty()) heading.unit = *unit;
-    return heading;
-  }
-  return sheet::parse_heading(title);
-}
-
 /// Kind of the readings, as a heading of one column that the import understands.
 sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                    const std::vector<RunColumn>& runs,
@@ -241,14 +215,10 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
     if (all.unit.empty()) all.unit = one.unit;
   }
   for (const std::string& title : title_cells(sheet, table)) {
-    const std::vector<std::string> words = heading_words(title);
-    const bool deviation = std::any_of(words.begin(), words.end(), [](const std::string& word) {
-      return says_deviation(text::in_small_letters(word));
-    });
-    if (!deviation) continue;
+    if (!names_deviation(title)) continue;
     all.deviation = all.deviation || !all.measured;
     if (!all.unit.empty() || !unknown.empty()) continue;
-    const sheet::Heading stated = unit_in(title);
+    const sheet::Heading stated = unit_in_title(title);
     all.unit = stated.unit;
     unknown = stated.unknown_unit;
   }

@@ -80,6 +80,9 @@ Json sheet_preview(const std::string& bytes, const std::string& file, const impo
                 reading.table.has_headings ? Json(sheet.line[reading.table.heading_row]) : Json(nullptr)},
                {"columns", importer::columns_json(reading)},
                {"rows", Json::array()}};
+  // A doubt that the user can answer by confirming the meaning of the column.
+  for (std::size_t k = 0; k < reading.columns.size(); ++k)
+    if (!reading.columns[k].doubt.empty()) json["columns"][k]["doubt"] = reading.columns[k].doubt;
   for (std::size_t row = reading.table.first_data; row < sheet.rows.size() && json["rows"].size() < kShown;
        ++row)
     json["rows"].push_back(sheet.rows[row]);

@@ -32,6 +32,7 @@ function onPage(message) {
   if (/\bvernier [a-z]/.test(message)) return message;
   const words = message
     .replace(/; --preview shows.*$/, '')
+    .replace(/ \(for all columns of this machine: --deviation [^)]*\)/, '')
     .replace(/--column "([^"=]+)=([^"]+)"/g, '"$2" is $1')
     .replace(/--deviation "([^"=]+)=([^"]+)"/g, '"$2" is a deviation of $1')
     .replace(/--leave\b/g, '"left out"');
@@ -131,6 +132,20 @@ export async function importSheet(box, name, done) {
       );
       await done(output);
     });
+  /** The answer to a doubt, as --column and --deviation on the command line: the column is what it seems to be. */
+  const confirmations = (now) =>
+    now.columns.map((column, k) =>
+      column.doubt && kind === 'table'
+        ? button(
+            `"${column.heading}" is right as ${column.use === 'deviation' ? 'a deviation of ' : ''}${withUnit(column)}`,
+            () => {
+              said.set(k, { use: column.use, name: column.name, unit: column.unit });
+              return draw();
+            },
+            { class: 'quiet', 'data-confirms': column.heading },
+          )
+        : null,
+    );
   const sheets = (now) => {
     const node = choice(
       'sheet',
@@ -170,6 +185,7 @@ export async function importSheet(box, name, done) {
         `What is in ${name}?`,
         el('p', { id: 'how-read' }, now.how),
         now.message && kind === 'table' ? el('p', { class: 'error', role: 'alert', id: 'sheet-message' }, onPage(now.message)) : null,
+        now.message ? el('div', { class: 'controls', id: 'sheet-confirmations' }, confirmations(now)) : null,
         el(
           'div',
           { class: 'controls' },

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/sizes/position_sizes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "tools/maths/median.h"
+
+namespace vernier::importer {
+namespace {
+
+/// A row is far from its target if its difference is this many times as large as the largest one of the other
+/// rows. Exchanged digits change a position by at least 9 of its last digits, a slipped decimal sign by nine
+/// tenths; the deviations of a robot are 2 mm and of one size.
+constexpr double kFar = 15;
+constexpr double kVisible_mm = 0.5, kVisible_deg = 0.1;  // no difference is judged below this size
+/// The same, if the differences of the other rows are equal to the last digit and show no scatter.
+constexpr double kVisibleBesideEqual_mm = 5, kVisibleBesideEqual_deg = 1;
+constexpr std::size_t kFewestRows = 4;  // fewer rows show no usual difference
+/// More rows than this share are a change of the set-up, not wrong cells.
+constexpr double kMostShare = 0.1;
+/// No turn of a usual axis is longer: two turns in each direction.
+constexpr double kMost_rad = 4 * std::numbers::pi;
+/// Whole numbers of radians are not a usual choice of targets. With this many of them, the unit is wrong.
+constexpr std::size_t kFewestAngles = 3;
+
+/// True if no other axis moves in a way that moves the point: the measured position of a linear axis follows
+/// its target only while the rotary axes and the parallel axes stand still.
+bool follows_target(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                    const std::vector<SizedColumn>& columns, std::size_t target) {
+  const auto is_linear = [](const std::string& name) { return name == "X" || name == "Y" || name == "Z"; };
+  if (!is_linear(columns[target].name)) return true;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (k == target || !columns[k].axis || is_linear(columns[k].name)) continue;
+    std::set<double> values;
+    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+      if (const auto value = cell_number(sheet, row, k)) values.insert(*value);
+    if (values.size() > 1) return false;
+  }
+  return true;
+}
+
+/// Difference of a measured position from its target, row after row, in mm or deg.
+struct Difference {
+  std::size_t row = 0;
+  double from_target = 0, from_middle = 0;
+};
+
+std::vector<Difference> differences_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                       const std::vector<SizedColumn>& columns, std::size_t target,
+                                       std::size_t reading) {
+  constexpr double kTurn_deg = 360;
+  const double of_target = sized_unit(columns[target])->factor,
+               of_reading = sized_unit(columns[reading])->factor;
+  const bool angle = sized_unit(columns[reading])->dimension == format::Dimension::kAngle;
+  std::vector<Difference> list;
+  std::vector<double> values;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto at = cell_number(sheet, row, target), read = cell_number(sheet, row, reading);
+    if (!at || !read) continue;
+    const double apart = *read * of_reading - *at * of_target;
+    list.push_back({row, angle ? std::remainder(apart, kTurn_deg) : apart, 0});
+    values.push_back(list.back().from_target);
+  }
+  if (list.empty()) return list;
+  const double middle = maths::median(std::move(values));
+  for (Difference& one : list) one.from_middle = std::abs(one.from_target - middle);
+  std::sort(list.begin(), list.end(),
+            [](const auto& a, const auto& b) { return a.from_middle < b.from_middle; });
+  return list;
+}
+
+std::optional<SizeDoubt> far_row(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                 const std::vector<SizedColumn>& columns, std::size_t target,
+                                 std::size_t reading) {
+  const std::vector<Difference> sorted = differences_of(sheet, table, columns, target, reading);
+  if (sorted.size() < kFewestRows) return std::nullopt;
+  const bool angle = sized_unit(columns[reading])->dimension == format::Dimension::kAngle;
+  constexpr double kEqual = 1e-9;  // rounding of the numbers
+  const std::size_t most =
+      std::max<std::size_t>(1, static_cast<std::size_t>(kMostShare * static_cast<double>(sorted.size())));
+  for (std::size_t i = sorted.size() - most; i < sorted.size(); ++i) {
+    const double usual = sorted[i - 1].from_middle;
+    const bool equal = usual < kEqual;
+    const double visible = angle   ? equal ? kVisibleBesideEqual_deg : kVisible_deg
+                           : equal ? kVisibleBesideEqual_mm
+                                   : kVisible_mm;
+    if (sorted[i].from_middle < visible || sorted[i].from_middle < kFar * usual) continue;
+    const auto first = std::min_element(sorted.begin() + static_cast<std::ptrdiff_t>(i), sorted.end(),
+                                        [](const auto& a, const auto& b) { return a.row < b.row; });
+    const std::size_t more = sorted.size() - i - 1;
+    return SizeDoubt{
+        reading, sheet.line[first->row], sheet.rows[first->row][reading],
+        fmt::format("the measured position \"{0}\" differs from its target {1} by {2} in this row{3}, in the "
+                    "other rows by at most {4} from their usual difference: correct the cell or its target; "
+                    "if both are right, give --column \"{5}[{6}]={0}\"",
+                    table.headings[reading].text, sheet.rows[first->row][target],
+                    size_text(std::abs(first->from_target), angle),
+                    more > 0 ? fmt::format(" (and so in {} more)", more) : "", size_text(usual, angle),
+                    columns[reading].name, columns[reading].unit)};
+  }
+  return std::nullopt;
+}
+
+/// The numbers of a column, and for each one half of the step of its last digit.
+struct Printed {
+  double value = 0, half_digit = 0;
+};
+
+std::vector<Printed> printed_values(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                    std::size_t k) {
+  std::vector<Printed> list;
+  std::set<double> known;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto value = cell_number(sheet, row, k);
+    if (!value || *value == 0 || !known.insert(std::abs(*value)).second) continue;
+    const std::string& cell = sheet.rows[row][k];
+    const auto sign = cell.find(sheet.decimal_comma ? ',' : '.');
+    const double digits = sign == std::string::npos ? 0 : static_cast<double>(cell.size() - sign - 1);
+    list.push_back({std::abs(*value), 0.5 * std::pow(10, -digits)});
+  }
+  return list;
+}
+
+/// Whole degrees under a heading in rad.
+bool are_degrees(const std::vector<Printed>& values) {
+  double largest = 0;
+  bool whole = true;
+  for (const Printed& one : values) {
+    largest = std::max(largest, one.value);
+    whole &= one.value == std::floor(one.value);
+  }
+  return largest > kMost_rad || (whole && largest > std::numbers::pi && values.size() >= kFewestAngles);
+}
+
+/// Fractions of a half turn in rad, to the last digit: 0.524 1.047 1.571 … 6.283.
+bool are_radians(const std::vector<Printed>& values) {
+  constexpr double kLeastResolution = 1000;  // largest value in steps of the last digit
+  if (values.size() < kFewestAngles) return false;
+  double largest = 0, digit = 0;
+  for (const Printed& one : values) {
+    largest = std::max(largest, one.value);
+    digit = std::max(digit, 2 * one.half_digit);
+  }
+  if (largest > kMost_rad || largest < kLeastResolution * digit / 2) return false;
+  for (const int parts : {2, 3, 4, 5, 6, 8, 9, 10, 12, 15, 16, 18, 20, 24, 30, 36}) {
+    const double step = std::numbers::pi / parts;
+    const bool all = std::all_of(values.begin(), values.end(), [&](const Printed& one) {
+      // Spreadsheets cut digits off: a whole digit, and the rounding of the binary number.
+      return std::abs(std::remainder(one.value, step)) <= 2.001 * one.half_digit + 1e-12;
+    });
+    if (all) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<SizeDoubt> judge_measured_positions(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                                const std::vector<SizedColumn>& columns) {
+  std::vector<SizeDoubt> doubts;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k].use != SizedColumn::Use::kPosition || columns[k].measures.empty()) continue;
+    const auto target = std::find_if(columns.begin(), columns.end(), [&](const SizedColumn& one) {
+      return one.use == SizedColumn::Use::kPosition && one.axis && one.name == columns[k].measures;
+    });
+    if (target == columns.end() || !sized_unit(*target) || !sized_unit(columns[k]) ||
+        sized_unit(*target)->dimension != sized_unit(columns[k])->dimension)
+      continue;
+    const auto at = static_cast<std::size_t>(target - columns.begin());
+    if (!follows_target(sheet, table, columns, at)) continue;
+    const auto doubt = far_row(sheet, table, columns, at, k);
+    // A profile was made from another file: its cells may be wrong.
+    if (doubt && columns[k].stated && !columns[k].profile)
+      sheet.notes.push_back(fmt::format("line {}, \"{}\": {}", doubt->line, doubt->word,
+                                        doubt->text.substr(0, doubt->text.find(": correct the cell"))));
+    else if (doubt)
+      doubts.push_back(*doubt);
+  }
+  return doubts;
+}
+
+std::vector<SizeDoubt> judge_angle_units(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                         const std::vector<SizedColumn>& columns) {
+  std::vector<SizeDoubt> doubts;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SizedColumn& column = columns[k];
+    const bool angles = column.use == SizedColumn::Use::kPosition && !column.stated &&
+                        (column.axis || !column.measures.empty());
+    if (!angles || (column.unit != "rad" && column.unit != "deg")) continue;
+    const std::vector<Printed> values = printed_values(sheet, table, k);
+    const bool degrees = column.unit == "rad" && are_degrees(values);
+    if (!degrees && !(column.unit == "deg" && are_radians(values))) continue;
+    double largest = 0;
+    for (const Printed& one : values) largest = std::max(largest, one.value);
+    const std::string& heading = table.headings[k].text;
+    const char* const other = degrees ? "deg" : "rad";
+    doubts.push_back(
+        {k, sheet.line[table.heading_row], "",
+         fmt::format("the positions go to {:.6g}, {}: {} under a heading in {}; correct the unit of the "
+                     "heading to [{}]; if [{}] is right, give --column \"{}[{}]={}\"",
+                     largest,
+                     degrees ? largest > kMost_rad
+                                   ? fmt::format("{:.3g} turns in rad", largest / (2 * std::numbers::pi))
+                                   : std::string("and all are whole numbers")
+                             : std::string("and all are fractions of a half turn in rad"),
+                     degrees ? "degrees" : "radians", column.unit, other, column.unit, column.name,
+                     column.unit, heading)});
+  }
+  return doubts;
+}
+
+}  // namespace vernier::importer

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <vector>
+
+#include "tools/import/sizes/sized_column.h"
+#include "tools/sheet/heading.h"
+#include "tools/sheet/sheet.h"
+
+namespace vernier::importer {
+
+/// Compares the measured positions with the target positions row by row: few rows that are far from their
+/// target, while the other rows are not, have a wrong cell (450 mm typed as 405 or 4500). Returns at most one
+/// doubt for each column of measured positions. A column that the user stated in an option gets a note in
+/// `sheet` instead. Limits: the constants in the source, with their reasons.
+std::vector<SizeDoubt> judge_measured_positions(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                                const std::vector<SizedColumn>& columns);
+
+/// Compares the positions of rotary axes with their unit: degrees under a heading in rad, and radians under a
+/// heading in deg. Returns at most one doubt for each column whose unit the user did not state.
+std::vector<SizeDoubt> judge_angle_units(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                         const std::vector<SizedColumn>& columns);
+
+}  // namespace vernier::importer
