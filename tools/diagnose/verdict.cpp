@@ -165,8 +165,19 @@ class Decision {
     if (!found_.alternatives.other.empty())
       answer_.runner_up_distance = found_.alternatives.other.front().distance;
     if (is_noise_ || is_explained_on_check()) return {};
-    return "Effects of the catalogue reduce the residual, but the residual remains larger than the noise." +
+    return (is_of_the_size_of_noise()
+                ? "Effects of the catalogue reduce the residual to the size of the noise, but the residual "
+                  "still "
+                  "has a structure, which noise does not have."
+                : "Effects of the catalogue reduce the residual, but the residual remains larger than the "
+                  "noise.") +
            where_left(answer_.left);
+  }
+
+  bool is_of_the_size_of_noise() const {
+    const double freedom = std::max(1.0, answer_.end.freedom);
+    return fit::has_uncertainty(found_.measurement) &&
+           answer_.remaining.chi_square_per_freedom < 1 + limits_.noise_sigmas * std::sqrt(2 / freedom);
   }
 
   std::string pieces() {

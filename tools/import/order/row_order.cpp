@@ -132,7 +132,7 @@ DirectionDoubt doubt_of_directions(const sheet::Sheet& sheet, const RowOrder& or
 }
 
 std::string lines_text(const std::vector<std::size_t>& lines) {
-  constexpr std::size_t kMost = 6;
+  constexpr std::size_t kMost = 6;  // lines that a reader compares at a glance
   std::string text = lines.size() == 1 ? "line " : "lines ";
   for (std::size_t i = 0; i < std::min(kMost, lines.size()); ++i)
     text += (i > 0 ? ", " : "") + std::to_string(lines[i]);
