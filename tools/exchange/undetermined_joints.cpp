@@ -53,7 +53,7 @@ std::vector<UndeterminedJoint> undetermined_joints(const model::Machine& machine
 }
 
 std::string joints_text(const std::vector<UndeterminedJoint>& joints) {
-  constexpr std::size_t kMost = 4;
+  constexpr std::size_t kMost = 4;  // names in a line
   std::string text;
   for (const UndeterminedJoint& one : joints) {
     text += (text.empty() ? "" : ", ") + one.joint + " (";
