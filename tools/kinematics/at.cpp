@@ -14,6 +14,18 @@ namespace vernier::kinematics {
 namespace {
 
 /// Returns the column of a state for a name, or nullptr.
+/// Names that a state can have. An error of temperature needs an input in the machine file.
+std::string names_of(const model::Machine& machine) {
+  std::string text = machine.axes.empty() ? "no axes" : "the axes";
+  for (const model::Axis& axis : machine.axes)
+    text += (&axis == &machine.axes.front() ? " " : ", ") + axis.name;
+  text += machine.inputs.empty() ? " and no inputs, so that none of its errors depends on another quantity"
+                                 : " and the inputs";
+  for (const model::Input& input : machine.inputs)
+    text += (&input == &machine.inputs.front() ? " " : ", ") + input.name;
+  return text;
+}
+
 model::Column* column_of(const model::Machine& machine, model::States& states, const std::string& name) {
   const model::Symbol symbol = model::resolve_name(machine, name);
   switch (symbol.kind) {
@@ -58,8 +70,9 @@ void set_word(const model::Machine& machine, model::States& states, std::set<std
   }
   model::Column* column = column_of(machine, states, name);
   if (column == nullptr)
-    throw text::InputError({machine.file, 0}, name,
-                           "this machine has no axis, input or motion quantity of this name");
+    throw text::InputError(
+        {machine.file, 0}, name,
+        "this machine has no axis, input or motion quantity of this name; it has " + names_of(machine));
   const auto number = text::parse_number(value);
   if (!number) throw text::InputError({}, value, "not a number, for " + name);
   (*column)[0] = *number;

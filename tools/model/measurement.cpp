@@ -833,9 +833,12 @@ void require_time_order(const Measurement& m) {
     std::size_t& before = last[clock];
     const auto at = static_cast<Eigen::Index>(row), from = static_cast<Eigen::Index>(before);
     if (before < m.rows() && m.states.time[at] < m.states.time[from])
-      throw text::InputError({m.files[m.file[row]], m.line[row]}, format::columns::kTime,
-                             fmt::format("falls from {} to {} s in run \"{}\": rows are in the order of time",
-                                         m.states.time[from], m.states.time[at], clocks[clock]));
+      throw text::InputError(
+          {m.files[m.file[row]], m.line[row]}, format::columns::kTime,
+          fmt::format("falls from {} to {} s in run \"{}\": rows are in the order of time; if a "
+                      "file has a clock of its own, write a column \"{}\" with another name "
+                      "in each file; if not, state the files in the order of time",
+                      m.states.time[from], m.states.time[at], clocks[clock], format::columns::kRun));
     before = row;
   }
 }

@@ -146,9 +146,8 @@ const Case kCases[] = {
      "is the "
      "direction of increasing positions of X"},
     {"HinOfAWideTableTowardSmallerPositions", "X soll [mm];hin [um];zur. [um]\n0;1;2\n-1;3;4\n-2;5;6\n",
-     "X[mm],dirX,run,x[mm]\n0,-1,1,0.001\n-1,-1,1,-0.997\n-2,-1,1,-1.995\n0,1,1,0.002\n-1,1,1,-0.996\n-2,1,1,"
-     "-1."
-     "994\nnote: \"hin [um]\" is read as the approach in the direction of decreasing positions"},
+     "X[mm],dirX,run,x[mm]\n0,-1,1,0.001\n-1,-1,1,-0.997\n-2,-1,1,-1.995\n-2,1,1,-1.994\n-1,1,1,-0.996\n0,1,"
+     "1,0.002\nnote: \"hin [um]\" is read as the approach in the direction of decreasing positions"},
     {"UpOfAWideTableTowardSmallerPositions", "Z [mm];down [um];up [um]\n0;1;2\n-1;3;4\n-2;5;6\n",
      "Z[mm],dirZ,run,z[mm]\n0,-1,1,0.001\n"},
     // Headings.
@@ -166,7 +165,7 @@ const Case kCases[] = {
     {"NennmassAndIstmass", "Nennmaß X [mm];Istmaß X [mm]\n0;0,001\n100;100,002\n",
      "X[mm],x[mm]\n0,0.001\n100,100.002\n"},
     {"ForthAndBackBesideEachOther", "X soll [mm];Abw. vor [um];Abw. zur. [um]\n0;1;2\n100;3;4\n",
-     "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n100,1,1,100.003\n0,-1,1,0.002\n100,-1,1,100.004\n"},
+     "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n100,1,1,100.003\n100,-1,1,100.004\n0,-1,1,0.002\n"},
 };
 
 class SheetMeaning : public testing::TestWithParam<Case> {};
@@ -208,7 +207,7 @@ TEST(SheetMeaningRemedy, ErrorsForthAndBackWithoutAnAxisNameTheWorkingAssignment
   words.columns = {"X[mm]=Position"};
   words.deviations = {"X[um]=Deviation"};
   EXPECT_EQ(read(table, words),
-            "X[mm],dirX,run,x[mm]\n0,1,1,0.0012\n100,1,1,100.0022\n0,-1,1,0.0034\n100,-1,1,100.0041\n");
+            "X[mm],dirX,run,x[mm]\n0,1,1,0.0012\n100,1,1,100.0022\n100,-1,1,100.0041\n0,-1,1,0.0034\n");
 }
 
 TEST(SheetMeaningRemedy, AStraightnessWithoutASymbolIsNotPutOnOneAxis) {
@@ -562,7 +561,7 @@ TEST(SheetCells, BlanksSeparateColumnsWithDecimalCommas) {
   EXPECT_THAT(
       read("Deviations in um\nX [mm]     Run 1 fwd   Run 1 rev\n0        0.1      -3.0\n100      1.1      "
            "-2.0\n"),
-      StartsWith("X[mm],dirX,run,x[mm]\n0,1,1,0.0001\n100,1,1,100.0011\n0,-1,1,-0.003\n"));
+      StartsWith("X[mm],dirX,run,x[mm]\n0,1,1,0.0001\n100,1,1,100.0011\n100,-1,1,99.998\n"));
 }
 
 TEST(SheetCells, ATitleStatesTheUnitOfTheDeviations) {
@@ -576,6 +575,43 @@ TEST(SheetCells, ATitleStatesTheUnitOfTheDeviations) {
   // The unit belongs to the positions, or two titles contradict each other.
   EXPECT_THAT(read("Abweichungen an den Positionen in mm;\n" + rows), HasSubstr("no unit"));
   EXPECT_THAT(read("Abweichungen in \u00b5m;\nAbweichung in mm;\n" + rows), HasSubstr("no unit"));
+}
+
+TEST(SheetCells, AUnitOfATitleBelongsToTheQuantityBeforeIt) {
+  const std::string runs = "Pos [mm];1+;1-\n0;1,5;2\n100;-2;3\n";
+  const auto last = [](const std::string& unit) {
+    return unit == "um"
+               ? "X[mm],dirX,run,x[mm]\n0,1,1,0.0015\n100,1,1,99.998\n100,-1,1,100.003\n0,-1,1,0.002\n"
+               : "X[mm],dirX,run,x[mm]\n0,1,1,1.5\n100,1,1,98\n100,-1,1,103\n0,-1,1,2\n";
+  };
+  for (const char* const title :
+       {"Achse X: Positionen in mm, Abweichungen in \u00b5m",
+        "Achse X, Sollwerte in mm, Abweichungen in \u00b5m",
+        "Achse X: Position in mm / Abweichung in \u00b5m", "Achse X (Abweichung in \u00b5m)",
+        "Toleranz 0,02 mm, Positionierabweichungen in \u00b5m, Achse X",
+        "Achse X, Abweichungen, Werte in \u00b5m"})
+    EXPECT_THAT(read(std::string(title) + ";;\n" + runs), StartsWith(last("um"))) << title;
+  EXPECT_THAT(read("Achse X, Toleranz 8 \u00b5m, Abweichungen in mm;;\n" + runs), StartsWith(last("mm")));
+  // The titles give the units of all columns.
+  EXPECT_THAT(read("Achse X: Positionen in mm, Abweichungen in \u00b5m;;\nPos;1+;1-\n0;1,5;2\n100;-2;3\n"),
+              StartsWith(last("um")));
+  EXPECT_THAT(read("Achse X, alle Werte in mm\nSoll;Ist\n0;0,001\n100;100,002\n"),
+              StartsWith("X[mm],x[mm]\n0,0.001\n100,100.002\n"));
+}
+
+TEST(SheetCells, WholeTurnsOfAMeasuredAngleAreRemoved) {
+  EXPECT_EQ(
+      read("Soll C [deg];Ist C [deg]\n0;359,9994\n90;90,0010\n180;180,0000\n270;269,9990\n"),
+      "C[deg],rz[deg]\n0,-0.0006\n90,90.0010\n180,180.0000\n270,269.9990\n"
+      "note: 1 measured positions of \"Ist C [deg]\" differ from their target by whole turns, which are "
+      "removed (359.999 at 0 deg is read as -0.001)\n");
+}
+
+TEST(SheetCells, DirectionsOfAnAxisWithItsLetterAndInWordsOfAWay) {
+  for (const auto& [forth, back] : {std::pair{"X+", "X-"}, {"Hinfahrt", "R\u00fcckfahrt"}})
+    EXPECT_EQ(read(std::string("X soll [mm];Richtung;Abweichung [um]\n0;") + forth + ";1\n100;" + forth +
+                   ";2\n100;" + back + ";3\n0;" + back + ";4\n"),
+              "X[mm],dirX,x[mm]\n0,1,0.001\n100,1,100.002\n100,-1,100.003\n0,-1,0.004\n");
 }
 
 TEST(SheetRemedy, ADeviationWithoutAPositionNamesTheOptionThatReadsIt) {

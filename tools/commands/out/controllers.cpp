@@ -116,6 +116,7 @@ void export_controller(const ControllerArguments& arguments, Controller controll
   const std::vector<exchange::ConfigurationFile> texts =
       exchange::controller_files(controller, setting, machine.name, tables);
   const exchange::ControllerErrors errors = exchange::controller_errors(machine, axes, tables, at);
+  refuse_without_errors(common, errors.rms_before_um);
   const Json files = write_folder(common, texts);
   print_tables(common, tables, errors);
   print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);

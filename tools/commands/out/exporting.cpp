@@ -12,6 +12,7 @@
 #include "tools/results/fit_findings.h"
 #include "tools/safety/safety_sheet.h"
 #include "tools/text/assurance.h"
+#include "tools/text/error.h"
 
 namespace vernier::commands::exchange_cli {
 
@@ -100,6 +101,15 @@ std::vector<exchange::LeftOut> remaining(const std::array<double, 3>& after_um) 
                                   exchange::kLetters[i]),
                       after_um[i]});
   return left;
+}
+
+void refuse_without_errors(const ExchangeArguments& arguments, double before_um) {
+  if (before_um > 0) return;
+  throw text::InputError(
+      {arguments.machine, 0}, "",
+      "the model of this machine has no errors, and tables of zeros would replace those of the controller: "
+      "fit "
+      "the machine to a measurement first (vernier fit MACHINE ROWS -o FITTED), and export the fitted file");
 }
 
 void print_rms(const ExchangeArguments& arguments, std::size_t positions, double before_um, double after_um) {

@@ -57,6 +57,10 @@ Json three_json(const std::array<double, 3>& values);
 /// Returns one entry for each of X, Y and Z in which an error remains with the exported files.
 std::vector<exchange::LeftOut> remaining(const std::array<double, 3>& after_um);
 
+/// Throws InputError if the model has no errors: its tables of zeros would replace the tables of the
+/// controller.
+void refuse_without_errors(const ExchangeArguments& arguments, double before_um);
+
 /// Prints the rms error of the tool point over a number of positions, without and with the exported files.
 void print_rms(const ExchangeArguments& arguments, std::size_t positions, double before_um, double after_um);
 

@@ -128,6 +128,7 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   const std::vector<exchange::ConfigurationFile> texts =
       exchange::firmware_files(firmware, present, machine.name, correction);
   const exchange::PrinterErrors errors = exchange::printer_errors(machine, axes, correction, at, bed);
+  refuse_without_errors(common, errors.rms_before_um);
   const Json files = write_folder(common, texts);
   if (bed && bed->shape) print_shape(human_stream(common.json), *bed->shape);
   if (bed)

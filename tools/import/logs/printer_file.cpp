@@ -425,6 +425,9 @@ class ProbeLog {
     }
     end_series();
     take_offset(text);
+    // One clock for all surveys of a log: the second survey of the bed does not begin at 0 s.
+    const double begin = touches_.empty() ? 0 : touches_.front().t;
+    for (Touch& one : touches_) one.t -= begin;
     return chosen();
   }
 
@@ -561,7 +564,7 @@ ImportTable table_of(const std::string& file, const std::vector<Touch>& touches,
   if (options.u_um) add(format::columns::kUncertainty, "um", [&](const Touch&) { return *options.u_um; });
   const auto all = [&](const auto& has) { return std::all_of(touches.begin(), touches.end(), has); };
   if (all([](const Touch& touch) { return !std::isnan(touch.t); }))
-    add(format::columns::kTime, "s", [&](const Touch& touch) { return touch.t - touches.front().t; });
+    add(format::columns::kTime, "s", [](const Touch& touch) { return touch.t; });
   for (const auto& [name, first] : touches.front().temperature)
     if (all([&, key = name](const Touch& touch) { return touch.temperature.contains(key); }))
       add("T_" + name, "degC", [&, key = name](const Touch& touch) { return touch.temperature.at(key); });

@@ -23,8 +23,9 @@ constexpr double kVisible_mm = 0.5, kVisible_deg = 0.1;  // no difference is jud
 /// The same, if the differences of the other rows are equal to the last digit and show no scatter.
 constexpr double kVisibleBesideEqual_mm = 5, kVisibleBesideEqual_deg = 1;
 constexpr std::size_t kFewestRows = 4;  // fewer rows show no usual difference
-/// More rows than this share are a change of the set-up, not wrong cells.
-constexpr double kMostShare = 0.1;
+constexpr double kTurn_deg = 360;
+/// More rows than this share may be the usual ones, and the others a second set-up.
+constexpr double kMostShare = 0.4;
 /// No turn of a usual axis is longer: two turns in each direction.
 constexpr double kMost_rad = 4 * std::numbers::pi;
 /// Whole numbers of radians are not a usual choice of targets. With this many of them, the unit is wrong.
@@ -55,7 +56,6 @@ struct Difference {
 std::vector<Difference> differences_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                        const std::vector<SizedColumn>& columns, std::size_t target,
                                        std::size_t reading) {
-  constexpr double kTurn_deg = 360;
   const double of_target = sized_unit(columns[target])->factor,
                of_reading = sized_unit(columns[reading])->factor;
   const bool angle = sized_unit(columns[reading])->dimension == format::Dimension::kAngle;
@@ -184,6 +184,40 @@ std::vector<SizeDoubt> judge_measured_positions(sheet::Sheet& sheet, const sheet
       doubts.push_back(*doubt);
   }
   return doubts;
+}
+
+void remove_whole_turns(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                        const std::vector<SizedColumn>& columns) {
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k].use != SizedColumn::Use::kPosition || columns[k].measures.empty() ||
+        columns[k].unit != "deg")
+      continue;
+    const auto target = std::find_if(columns.begin(), columns.end(), [&](const SizedColumn& one) {
+      return one.use == SizedColumn::Use::kPosition && one.axis && one.name == columns[k].measures;
+    });
+    if (target == columns.end() || target->unit != "deg") continue;
+    const auto at = static_cast<std::size_t>(target - columns.begin());
+    std::size_t changed = 0;
+    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+      const auto set = cell_number(sheet, row, at), read = cell_number(sheet, row, k);
+      if (!set || !read) continue;
+      const double turns = std::round((*read - *set) / kTurn_deg);
+      if (turns == 0) continue;
+      std::string& cell = sheet.rows[row][k];
+      const char sign = sheet.decimal_comma ? ',' : '.';
+      const auto point = cell.find(sign);
+      cell = fmt::format("{:.{}f}", *read - turns * kTurn_deg,
+                         point == std::string::npos ? 0 : cell.size() - point - 1);
+      if (const auto dot = cell.find('.'); dot != std::string::npos) cell[dot] = sign;
+      ++changed;
+    }
+    if (changed > 0)
+      sheet.notes.push_back(
+          fmt::format("{} measured positions of \"{}\" differ from their target by whole turns, which are "
+                      "removed (359.999 "
+                      "at 0 deg is read as -0.001)",
+                      changed, table.headings[k].text));
+  }
 }
 
 std::vector<SizeDoubt> judge_angle_units(const sheet::Sheet& sheet, const sheet::SheetTable& table,

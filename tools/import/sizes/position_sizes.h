@@ -15,6 +15,11 @@ namespace vernier::importer {
 std::vector<SizeDoubt> judge_measured_positions(sheet::Sheet& sheet, const sheet::SheetTable& table,
                                                 const std::vector<SizedColumn>& columns);
 
+/// Removes whole turns between measured and target positions of rotary axes in deg: a display goes from 360
+/// to 0 within a turn (359.999 at the target 0). `sheet` gets a note.
+void remove_whole_turns(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                        const std::vector<SizedColumn>& columns);
+
 /// Compares the positions of rotary axes with their unit: degrees under a heading in rad, and radians under a
 /// heading in deg. Returns at most one doubt for each column whose unit the user did not state.
 std::vector<SizeDoubt> judge_angle_units(const sheet::Sheet& sheet, const sheet::SheetTable& table,

@@ -416,21 +416,27 @@ bool rotates(const std::vector<SheetColumn>& columns, const std::string& axis) {
   });
 }
 
-/// A title states the unit of deviations whose headings have none: "Abweichungen in µm". The note is written
-/// by the caller, from `unit_from`.
+/// Titles state the units of deviations and positions whose headings have none: "Abweichungen in µm",
+/// "Positionen in mm". The note is written by the caller, from `unit_from`.
 void take_units_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& table,
-                          std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
+                          std::vector<SheetColumn>& columns, const SheetWishes& wishes, const Guess& guess) {
   if (!wishes.unit.empty()) return;  // the user states the unit
-  const TitleUnit stated = unit_of_deviations(sheet, table);
-  if (stated.unit.empty()) return;
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    SheetColumn& column = columns[k];
-    if (column.use != SheetColumn::Use::kDeviation || !column.unit.empty() ||
-        !table.headings[k].unknown_unit.empty() || is_angle(stated.unit) != rotates(columns, column.name))
-      continue;
-    column.unit = stated.unit;
-    column.unit_from = stated.title;
-  }
+  const TitleUnits titles = units_of_titles(sheet, table);
+  // The positions first: the unit of an axis shows whether it rotates.
+  for (const auto use : {SheetColumn::Use::kColumn, SheetColumn::Use::kDeviation})
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      SheetColumn& column = columns[k];
+      const bool deviation = use == SheetColumn::Use::kDeviation;
+      const TitleUnit& stated = deviation ? titles.deviations : titles.positions;
+      if (column.use != use || stated.unit.empty() || !column.unit.empty() ||
+          !table.headings[k].unknown_unit.empty() || !wants_unit(column))
+        continue;
+      const bool reading = column.name.size() == 1 && !guess.is_axis(column.name);
+      if (!deviation && !guess.is_axis(column.name) && !reading) continue;
+      if (deviation && is_angle(stated.unit) != rotates(columns, column.name)) continue;
+      column.unit = stated.unit;
+      column.unit_from = stated.title;
+    }
 }
 
 /// The same name twice: an index column or a remark that reads like another.
@@ -491,7 +497,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
   if (!wishes.one_motion) refuse_tables_side_by_side(sheet, table, columns);
   settle_signs(sheet, table, columns, wishes);
   keep_names_apart(table, columns);
-  if (table.has_headings) take_units_of_titles(sheet, table, columns, wishes);
+  if (table.has_headings) take_units_of_titles(sheet, table, columns, wishes, guess);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     SheetColumn& column = columns[k];
     if (!column.unit.empty() || wishes.unit.empty() || !wants_unit(column)) continue;

@@ -18,6 +18,7 @@
 #include "tools/import/tables/wide_sheet.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
+#include "tools/import/words/title_units.h"
 #include "tools/sheet/several_tables.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
@@ -192,6 +193,7 @@ void judge_sizes(SheetReading& reading) {
   }
   note_decimal_parts(reading.sheet, reading.table, sized);
   std::vector<SizeDoubt> doubts = judge_angle_units(reading.sheet, reading.table, sized);
+  remove_whole_turns(reading.sheet, reading.table, sized);
   for (SizeDoubt& doubt : judge_measured_positions(reading.sheet, reading.table, sized))
     doubts.push_back(std::move(doubt));
   for (SizeDoubt& doubt :
@@ -206,14 +208,15 @@ void judge_sizes(SheetReading& reading) {
   }
 }
 
-/// Notes the title that stated the unit of deviations.
+/// Notes the titles that stated the units of deviations and positions.
 void note_units(SheetReading& reading) {
-  std::set<std::string> noted;
-  for (const SheetColumn& column : reading.columns)
-    if (!column.unit_from.empty() && noted.insert(column.unit_from).second)
-      reading.sheet.notes.push_back(fmt::format(
-          "the unit of the deviations is [{}], by the title \"{}\"; if this is wrong, give --unit",
-          column.unit, column.unit_from));
+  std::set<std::pair<bool, std::string>> noted;
+  for (const SheetColumn& column : reading.columns) {
+    const bool deviation = column.use == SheetColumn::Use::kDeviation;
+    if (!column.unit_from.empty() && noted.insert({deviation, column.unit_from}).second)
+      reading.sheet.notes.push_back(
+          note_of_title_unit(deviation ? "deviations" : "positions", {column.unit, column.unit_from}));
+  }
 }
 
 /// Notes the texts that stated the sign, and texts of other tables that state one for themselves.

@@ -201,7 +201,7 @@ double spread_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
 }
 
 /// Kind of the readings, as a heading of one column that the import understands.
-sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+sheet::Heading heading_of_readings(sheet::Sheet& sheet, const sheet::SheetTable& table,
                                    const std::vector<RunColumn>& runs,
                                    const std::vector<std::size_t>& others) {
   RunColumn all = runs.front();
@@ -215,12 +215,12 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
     if (all.unit.empty()) all.unit = one.unit;
   }
   for (const std::string& title : title_cells(sheet, table)) {
-    if (!names_deviation(title)) continue;
-    all.deviation = all.deviation || !all.measured;
+    if (names_deviation(title)) all.deviation = all.deviation || !all.measured;
     if (!all.unit.empty() || !unknown.empty()) continue;
-    const sheet::Heading stated = unit_in_title(title);
+    const sheet::Heading stated = unit_of_deviations_in(title);
     all.unit = stated.unit;
     unknown = stated.unknown_unit;
+    if (!stated.unit.empty()) sheet.notes.push_back(note_of_title_unit("deviations", {stated.unit, title}));
   }
   if (!all.deviation && !all.measured) {
     // Readings that go as far as the positions do are positions.
@@ -243,20 +243,32 @@ sheet::Heading heading_of_readings(const sheet::Sheet& sheet, const sheet::Sheet
   return heading;
 }
 
-/// True if the positions decrease from row to row.
-bool positions_decrease(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t position) {
-  constexpr std::size_t kEnough = 3;  // fewer rows show no order
+/// Returns 1 if the positions increase from row to row, -1 if they decrease, else 0. `enough`: with fewer
+/// rows the result is 0.
+int order_of_positions(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t position,
+                       std::size_t enough) {
   std::optional<double> before;
   std::size_t rows = 0;
+  int order = 0;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const auto number = sheet::plain_number(sheet.rows[row][position], sheet.decimal_comma);
     const auto value = number ? text::parse_number(*number) : std::nullopt;
     if (!value) continue;
-    if (before && *value >= *before) return false;
+    if (before) {
+      const int step = *value > *before ? 1 : *value < *before ? -1 : 0;
+      if (step == 0 || (order != 0 && step != order)) return 0;
+      order = step;
+    }
     before = value;
     ++rows;
   }
-  return rows >= kEnough;
+  return rows >= enough ? order : 0;
+}
+
+/// True if the positions decrease from row to row.
+bool positions_decrease(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t position) {
+  constexpr std::size_t kEnough = 3;  // fewer rows show no order
+  return order_of_positions(sheet, table, position, kEnough) < 0;
 }
 
 /// A table whose positions decrease from row to row. "hin" is the way that the rows go, as in a table with
@@ -388,8 +400,14 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
     rows.push_back(sheet.rows[row]);
     line.push_back(sheet.line[row]);
   }
-  for (const RunColumn& one : runs)
-    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+  // A run against the order of the rows was read from the last row to the first: the rows of a measurement
+  // file have the order of their readings.
+  for (const RunColumn& one : runs) {
+    const auto own_positions = positions.find(one.sense);
+    const int order = order_of_positions(
+        sheet, table, own_positions == positions.end() ? others.front() : own_positions->second, 2);
+    for (std::size_t count = 0; count < data; ++count) {
+      const std::size_t row = table.first_data + (one.sense * order < 0 ? data - 1 - count : count);
       if (sheet.rows[row][one.column].empty()) continue;
       std::vector<std::string> cells;
       for (const std::size_t k : others) {
@@ -402,6 +420,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
       rows.push_back(std::move(cells));
       line.push_back(sheet.line[row]);
     }
+  }
   if (rows.size() == table.first_data) return 0;
   sheet.rows = std::move(rows);
   sheet.line = std::move(line);

@@ -46,9 +46,9 @@ const WordSet kCountingWords = {"nr",    "no",    "num",    "nummer", "number", 
 const WordSet kStatisticWords = {"mittel", "mittelwert", "mittelwerte", "mittlere",   "mittl",
                                  "mean",   "average",    "avg",         "mw",         "durchschnitt",
                                  "stdev",  "stdabw",     "stabw",       "spannweite", "standardabweichung"};
-const WordSet kForthWords = {"1",   "+1",  "+",        "forward", "fwd",    "forth",
-                             "up",  "pos", "positive", "positiv", "vor",    "vorwärts",
-                             "hin", "auf", "plus",     "cw",      "\u2191", "\u2192"};
+const WordSet kForthWords = {"1",    "+1",       "+",       "forward", "fwd",      "forth", "up",
+                             "pos",  "positive", "positiv", "vor",     "vorwärts", "hin",   "auf",
+                             "plus", "cw",       "\u2191",  "\u2192",  "hinfahrt", "hinweg"};
 const WordSet kBackWords = {"-1",
                             "-",
                             "backward",
@@ -67,6 +67,9 @@ const WordSet kBackWords = {"-1",
                             "rück",
                             "rueck",
                             "rückwärts",
+                            "rückfahrt",
+                            "rueckfahrt",
+                            "rückweg",
                             "her",
                             "ab",
                             "minus",
@@ -120,7 +123,11 @@ bool is_missing(const std::string& cell) {
 }
 
 int sense_said(std::string_view word) {
-  const std::string small = text::in_small_letters(word);
+  std::string small = text::in_small_letters(word);
+  // "X+" is the direction + of the axis X.
+  if (small.size() == 2 && std::string_view("xyzabcuvw").find(small[0]) != std::string_view::npos &&
+      (small[1] == '+' || small[1] == '-'))
+    small.erase(0, 1);
   return kForthWords.contains(small) ? 1 : kBackWords.contains(small) ? -1 : 0;
 }
 
