@@ -57,7 +57,14 @@ class Diagnoser {
     result_.searched = finder_.candidates().size();
     result_.noise = finder_.noise();
     result_.noise_unit = fit::noise_unit(measurement_);
-    take(fit_steps(certain_first(finder_.chosen())));
+    Steps steps = fit_steps(certain_first(finder_.chosen()));
+    // Another effect may explain what a contradicted one explained of the fit rows.
+    constexpr int kMostRounds = 3;
+    for (int round = 0; round < kMostRounds && !steps.contradicted.empty(); ++round) {
+      finder_.find_without(steps.contradicted);
+      steps = fit_steps(certain_first(finder_.chosen()));
+    }
+    take(std::move(steps));
     decide();
     fit_candidates();
     const Findings found{options_,   measurement_,   machine_,      finder_, accepted_,
@@ -175,6 +182,8 @@ class Diagnoser {
     const ProofThresholds& limits = options_.thresholds.proof;
     const Proof proof = proof_of(before, after);
     if (proof.evidence < proof.asked(limits)) return std::nullopt;
+    // The many readings of one instrument must not hide that those of another contradict the step.
+    if (is_contradicted(proof)) return std::nullopt;
     // A step of one run does not apply to another run. It is sufficient that rows of other runs
     // become worse with it.
     if (!pool_.candidate(item).choice.runs.empty() && proof.evidence < 0) return std::nullopt;
@@ -182,6 +191,10 @@ class Diagnoser {
     const double held_out = finder_.held_out_evidence(item);
     if (held_out < limits.evidence) return std::nullopt;
     return StepEvidence{held_out, false};
+  }
+
+  bool is_contradicted(const Proof& proof) const {
+    return proof.least_of_file < -options_.thresholds.proof.evidence;
   }
 
   Proof proof_of(const fit::FitResult& before, const fit::FitResult& after) const {
@@ -204,7 +217,8 @@ class Diagnoser {
   struct Steps {
     std::vector<std::size_t> accepted;       // items that lower chi^2 in the fit, and that the rows confirm
     std::set<std::size_t> confirmed;         // of these, items that the check rows confirm
-    std::vector<std::string> not_confirmed;  // names of steps that the check rows contradict
+    std::vector<std::string> not_confirmed;  // names of steps that the check rows do not confirm
+    std::vector<std::size_t> contradicted;   // of these, items that one file of check rows contradicts
     std::vector<LadderStep> ladder;          // begins with the model as given
     std::string machine_text;
     fit::FitResult end;
@@ -224,7 +238,7 @@ class Diagnoser {
 
   /// Fits the items one after another. Excludes those that the fits or the check rows do not confirm.
   Steps fit_steps(const std::vector<std::size_t>& proposed) const {
-    Steps steps{proposed, {}, {}, {first_step()}, {}, base_, {}};
+    Steps steps{proposed, {}, {}, {}, {first_step()}, {}, base_, {}};
     steps.machine_text = steps.ladder.front().text;
     for (std::size_t count = 1; count <= steps.accepted.size();) {
       options_.progress(0.8 + 0.1 * static_cast<double>(count) / static_cast<double>(proposed.size()),
@@ -243,6 +257,7 @@ class Diagnoser {
       }
       const std::optional<StepEvidence> confirmation = confirmed_by(steps.end, fitted.fit, item);
       if (!confirmation) {
+        if (is_contradicted(proof_of(steps.end, fitted.fit))) steps.contradicted.push_back(item);
         steps.not_confirmed.push_back(pool_.candidate(item).spoken);
         exclude();
         continue;

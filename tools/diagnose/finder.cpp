@@ -74,6 +74,17 @@ void Finder::find() {
   if (!evidence_.noise().independent()) order_by_size();
 }
 
+void Finder::find_without(const std::vector<std::size_t>& items) {
+  for (const std::size_t item : items)
+    for (std::size_t other = 0; other < pool_.size(); ++other)
+      if (!pool_[other].banned && (other == item || pool_.same_columns(item, other)))
+        pool_.ban(other, "test `held out`: check rows contradict the effect");
+  select_again();
+  accept();
+  if (!fit::has_uncertainty(evidence_.measurement())) name_simplest();
+  if (!evidence_.noise().independent()) order_by_size();
+}
+
 void Finder::order_by_size() {
   std::vector<std::size_t> rest = chosen_;
   chosen_.clear();

@@ -47,6 +47,9 @@ class Finder {
   /// recorded quantities.
   void find();
 
+  /// Selects the set again without these candidates, and without those of the same columns.
+  void find_without(const std::vector<std::size_t>& items);
+
   /// Returns the indices of the accepted effects in the pool; the effect that explains most is first.
   const std::vector<std::size_t>& chosen() const { return chosen_; }
   const Pool& pool() const { return pool_; }

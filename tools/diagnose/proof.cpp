@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 namespace vernier::diagnose {
@@ -30,6 +31,15 @@ Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd&
   if (!noise.independent()) fit::whiten(fit::noise_layout(rows, check), noise, left);
   proof.evidence = (left.col(0).squaredNorm() - left.col(1).squaredNorm()) / 2;
   proof.expected = (left.col(0) - left.col(1)).squaredNorm() / 2;
+  std::map<std::size_t, double> of_file;
+  for (std::size_t i = 0; i < check.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    of_file[rows.file[rows.observations[check[i]].row]] +=
+        (left(at, 0) * left(at, 0) - left(at, 1) * left(at, 1)) / 2;
+  }
+  if (of_file.size() > 1)
+    for (const auto& [file, evidence] : of_file)
+      proof.least_of_file = std::min(proof.least_of_file, evidence);
   return proof;
 }
 

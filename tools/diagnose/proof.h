@@ -14,6 +14,8 @@ struct Proof {
                         // with the step against model without the step
   double expected = 0;  // mean of the evidence if the step is true; its negative if the step is absent. The
                         // variance of the evidence is twice this mean.
+  double least_of_file =
+      0;  // smallest evidence of the held-out rows of one file; 0 if there is one file only
   /// Returns the required evidence (natural logarithm) for accepting the step. The required evidence is odds
   /// of 20 to 1. If 99 of 100 true effects with this `expected` reach only smaller odds, the smaller odds are
   /// required, but the step must not increase the error of the held-out rows. If a true effect does not reach

@@ -61,6 +61,26 @@ TEST(Gate, AsksWhatATrueStepBringsAndNeverLessThanNothing) {
   EXPECT_DOUBLE_EQ((Proof{0, 100}.asked(limits)), limits.evidence);
 }
 
+// A laser run with many exact readings hid that the rows of a tracker became worse.
+TEST(Gate, TheCheckRowsOfOneFileAloneContradictAStep) {
+  Measurement rows = parse_measurement(survey({0.001, 0.001}), "m.csv", parse_machine(kAxis, "m.xml"));
+  const auto count = static_cast<Eigen::Index>(rows.observations.size());
+  Eigen::VectorXd before = Eigen::VectorXd::Constant(count, 0.002), after = before / 2;
+  const Proof one = proof_on_check_rows(rows, before, after, {}, 1);
+  EXPECT_GT(one.evidence, 0);
+  EXPECT_EQ(one.least_of_file, 0) << "one file has no other beside it";
+
+  rows.files.push_back("tracker.csv");
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < rows.observations.size(); ++i)
+    if (rows.check[rows.observations[i].row] != 0) last = i;
+  rows.file[rows.observations[last].row] = 1;
+  after[static_cast<Eigen::Index>(last)] = 0.004;
+  const Proof two = proof_on_check_rows(rows, before, after, {}, 1);
+  const double u = uncertainty_of(rows, rows.observations[last]), unit = u > 0 ? u : 1;
+  EXPECT_NEAR(two.least_of_file, (0.002 * 0.002 - 0.004 * 0.004) / 2 / (unit * unit), 1e-12);
+}
+
 TEST(Gate, AStepThatCheckRowsBearOutIsConfirmedByThem) {
   const Diagnosis answer = diagnosed({0.001, 0.001});
 
