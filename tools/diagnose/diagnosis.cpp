@@ -194,7 +194,7 @@ class Diagnoser {
   }
 
   bool is_contradicted(const Proof& proof) const {
-    return proof.least_of_file < -options_.thresholds.proof.evidence;
+    return proof.least_of_file < -options_.thresholds.proof.contradiction;
   }
 
   Proof proof_of(const fit::FitResult& before, const fit::FitResult& after) const {

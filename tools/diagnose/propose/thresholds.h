@@ -165,6 +165,9 @@ struct ProofThresholds {
   /// Natural logarithm of the required e-value. If the effect of a step is absent, the e-value reaches its
   /// limit in at most one case in twenty. This rate is independent of all earlier tests (Ville's inequality).
   double evidence = std::log(levels.strong_odds);
+  /// Natural logarithm of the odds at which the check rows of one file contradict a step. The limit is higher
+  /// than that of all check rows, because every step is compared with every file.
+  double contradiction = std::log(levels.very_strong_odds);
   /// Number of standard deviations by which the required evidence may be below the mean of the evidence of a
   /// true effect.
   double loss_sigmas = maths::upper_quantile(levels.chance_of_loss);
