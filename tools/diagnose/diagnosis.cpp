@@ -177,10 +177,8 @@ class Diagnoser {
   /// Returns nullopt if held-out rows do not confirm the step. Check rows are tested first; a step
   /// that makes them worse is never confirmed. Held-out runs are tested if the check rows cannot reach
   /// 20 to 1.
-  std::optional<StepEvidence> confirmed_by(const fit::FitResult& before, const fit::FitResult& after,
-                                           std::size_t item) const {
+  std::optional<StepEvidence> confirmed_by(const Proof& proof, std::size_t item) const {
     const ProofThresholds& limits = options_.thresholds.proof;
-    const Proof proof = proof_of(before, after);
     if (proof.evidence < proof.asked(limits)) return std::nullopt;
     // The many readings of one instrument must not hide that those of another contradict the step.
     if (is_contradicted(proof)) return std::nullopt;
@@ -255,9 +253,10 @@ class Diagnoser {
         exclude();
         continue;
       }
-      const std::optional<StepEvidence> confirmation = confirmed_by(steps.end, fitted.fit, item);
+      const Proof proof = proof_of(steps.end, fitted.fit);
+      const std::optional<StepEvidence> confirmation = confirmed_by(proof, item);
       if (!confirmation) {
-        if (is_contradicted(proof_of(steps.end, fitted.fit))) steps.contradicted.push_back(item);
+        if (is_contradicted(proof)) steps.contradicted.push_back(item);
         steps.not_confirmed.push_back(pool_.candidate(item).spoken);
         exclude();
         continue;

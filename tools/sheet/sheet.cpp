@@ -574,4 +574,9 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
   return sheet;
 }
 
+std::optional<double> number_at(const Sheet& sheet, std::size_t row, std::size_t column) {
+  const auto number = plain_number(sheet.rows[row][column], sheet.decimal_comma);
+  return number ? text::parse_number(*number) : std::nullopt;
+}
+
 }  // namespace vernier::sheet

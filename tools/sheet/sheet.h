@@ -77,4 +77,7 @@ char guess_separator(const std::string& text, const std::string& comment);
 /// Returns the name of a separator: "comma", "semicolon", "tab", "blanks".
 const char* separator_word(char separator);
 
+/// Returns the number in a cell; nullopt if the cell has no number with the decimal sign of the sheet.
+std::optional<double> number_at(const Sheet& sheet, std::size_t row, std::size_t column);
+
 }  // namespace vernier::sheet

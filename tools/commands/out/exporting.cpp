@@ -108,8 +108,8 @@ void refuse_without_errors(const ExchangeArguments& arguments, double before_um)
   throw text::InputError(
       {arguments.machine, 0}, "",
       "the model of this machine has no errors, and tables of zeros would replace those of the controller: "
-      "fit "
-      "the machine to a measurement first (vernier fit MACHINE ROWS -o FITTED), and export the fitted file");
+      "fit the machine to a measurement first (vernier fit MACHINE ROWS -o FITTED), and export the fitted "
+      "file");
 }
 
 void print_rms(const ExchangeArguments& arguments, std::size_t positions, double before_um, double after_um) {

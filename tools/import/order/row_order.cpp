@@ -9,19 +9,11 @@
 #include <optional>
 #include <set>
 
-#include "tools/sheet/sheet_number.h"
-#include "tools/text/numbers.h"
-
 namespace vernier::importer {
 namespace {
 
 /// One step of a motion shows no order: the way back to the next line of points is one step.
 constexpr std::size_t kFewestSteps = 2;
-
-std::optional<double> position_at(const sheet::Sheet& sheet, std::size_t row, std::size_t column) {
-  const auto number = sheet::plain_number(sheet.rows[row][column], sheet.decimal_comma);
-  return number ? text::parse_number(*number) : std::nullopt;
-}
 
 /// A row to which the axis moved, from the row before it.
 struct Step {
@@ -50,17 +42,17 @@ Path path_of(const sheet::Sheet& sheet, const RowOrder& order,
              const std::function<int(const std::string&)>& direction_of) {
   std::set<double> targets;
   for (std::size_t row = order.first_data; row < sheet.rows.size(); ++row)
-    if (const auto at = position_at(sheet, row, order.position)) targets.insert(*at);
+    if (const auto at = sheet::number_at(sheet, row, order.position)) targets.insert(*at);
   Path path;
   std::optional<std::size_t> before;
   bool joined = false;  // false: the next step begins a stretch
   for (std::size_t row = order.first_data; row < sheet.rows.size(); ++row) {
-    const auto here = position_at(sheet, row, order.position);
+    const auto here = sheet::number_at(sheet, row, order.position);
     if (sheet::is_blank(sheet.rows[row]) || !here) continue;
     const int direction = direction_of(sheet.rows[row][order.direction]);
     path.directions.insert(direction);
     if (before) {
-      const double there = *position_at(sheet, *before, order.position);
+      const double there = *sheet::number_at(sheet, *before, order.position);
       const bool same = same_others(sheet, order.others, *before, row);
       path.others_move |= !same;
       const auto a = targets.find(std::min(there, *here)), b = targets.find(std::max(there, *here));

@@ -77,7 +77,7 @@ std::optional<Sizes> sizes_of(const sheet::Sheet& sheet, const sheet::SheetTable
   sizes.limits = limits_of(columns, sizes.angle, plausible);
   sizes.stated = (sizes.angle ? plausible.deg : plausible.mm).has_value();
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
-    if (const auto value = cell_number(sheet, row, k)) {
+    if (const auto value = sheet::number_at(sheet, row, k)) {
       sizes.size.push_back(std::abs(*value) * unit->factor);
       sizes.line.push_back(sheet.line[row]);
     }
@@ -117,7 +117,7 @@ double travel_along(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                     const std::vector<SizedColumn>& columns, std::size_t position) {
   std::vector<double> at;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
-    if (const auto value = cell_number(sheet, row, position))
+    if (const auto value = sheet::number_at(sheet, row, position))
       at.push_back(*value * sized_unit(columns[position])->factor);
   if (at.empty()) return 0;
   const auto [least, most] = std::minmax_element(at.begin(), at.end());
@@ -190,7 +190,7 @@ SizeVerdict beside_other_groups(const sheet::Sheet& sheet, const sheet::SheetTab
                                 std::size_t of_group, const char* what) {
   std::map<std::string, Sizes> groups;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const auto value = cell_number(sheet, row, sizes.column);
+    const auto value = sheet::number_at(sheet, row, sizes.column);
     // Rows that are exactly 0 show no size.
     if (!value || *value == 0) continue;
     Sizes& one = groups[sheet.rows[row][of_group]];

@@ -41,10 +41,19 @@ bool follows_target(const sheet::Sheet& sheet, const sheet::SheetTable& table,
     if (k == target || !columns[k].axis || is_linear(columns[k].name)) continue;
     std::set<double> values;
     for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
-      if (const auto value = cell_number(sheet, row, k)) values.insert(*value);
+      if (const auto value = sheet::number_at(sheet, row, k)) values.insert(*value);
     if (values.size() > 1) return false;
   }
   return true;
+}
+
+/// Column with the target positions of a column of measured positions.
+std::optional<std::size_t> target_of(const std::vector<SizedColumn>& columns, std::size_t measured) {
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (columns[k].use == SizedColumn::Use::kPosition && columns[k].axis &&
+        columns[k].name == columns[measured].measures)
+      return k;
+  return std::nullopt;
 }
 
 /// Difference of a measured position from its target, row after row, in mm or deg.
@@ -62,7 +71,7 @@ std::vector<Difference> differences_of(const sheet::Sheet& sheet, const sheet::S
   std::vector<Difference> list;
   std::vector<double> values;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const auto at = cell_number(sheet, row, target), read = cell_number(sheet, row, reading);
+    const auto at = sheet::number_at(sheet, row, target), read = sheet::number_at(sheet, row, reading);
     if (!at || !read) continue;
     const double apart = *read * of_reading - *at * of_target;
     list.push_back({row, angle ? std::remainder(apart, kTurn_deg) : apart, 0});
@@ -118,7 +127,7 @@ std::vector<Printed> printed_values(const sheet::Sheet& sheet, const sheet::Shee
   std::vector<Printed> list;
   std::set<double> known;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const auto value = cell_number(sheet, row, k);
+    const auto value = sheet::number_at(sheet, row, k);
     if (!value || *value == 0 || !known.insert(std::abs(*value)).second) continue;
     const std::string& cell = sheet.rows[row][k];
     const auto sign = cell.find(sheet.decimal_comma ? ',' : '.');
@@ -167,15 +176,12 @@ std::vector<SizeDoubt> judge_measured_positions(sheet::Sheet& sheet, const sheet
   std::vector<SizeDoubt> doubts;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (columns[k].use != SizedColumn::Use::kPosition || columns[k].measures.empty()) continue;
-    const auto target = std::find_if(columns.begin(), columns.end(), [&](const SizedColumn& one) {
-      return one.use == SizedColumn::Use::kPosition && one.axis && one.name == columns[k].measures;
-    });
-    if (target == columns.end() || !sized_unit(*target) || !sized_unit(columns[k]) ||
-        sized_unit(*target)->dimension != sized_unit(columns[k])->dimension)
+    const auto at = target_of(columns, k);
+    if (!at || !sized_unit(columns[*at]) || !sized_unit(columns[k]) ||
+        sized_unit(columns[*at])->dimension != sized_unit(columns[k])->dimension)
       continue;
-    const auto at = static_cast<std::size_t>(target - columns.begin());
-    if (!follows_target(sheet, table, columns, at)) continue;
-    const auto doubt = far_row(sheet, table, columns, at, k);
+    if (!follows_target(sheet, table, columns, *at)) continue;
+    const auto doubt = far_row(sheet, table, columns, *at, k);
     // A profile was made from another file: its cells may be wrong.
     if (doubt && columns[k].stated && !columns[k].profile)
       sheet.notes.push_back(fmt::format("line {}, \"{}\": {}", doubt->line, doubt->word,
@@ -192,14 +198,11 @@ void remove_whole_turns(sheet::Sheet& sheet, const sheet::SheetTable& table,
     if (columns[k].use != SizedColumn::Use::kPosition || columns[k].measures.empty() ||
         columns[k].unit != "deg")
       continue;
-    const auto target = std::find_if(columns.begin(), columns.end(), [&](const SizedColumn& one) {
-      return one.use == SizedColumn::Use::kPosition && one.axis && one.name == columns[k].measures;
-    });
-    if (target == columns.end() || target->unit != "deg") continue;
-    const auto at = static_cast<std::size_t>(target - columns.begin());
+    const auto at = target_of(columns, k);
+    if (!at || columns[*at].unit != "deg") continue;
     std::size_t changed = 0;
     for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-      const auto set = cell_number(sheet, row, at), read = cell_number(sheet, row, k);
+      const auto set = sheet::number_at(sheet, row, *at), read = sheet::number_at(sheet, row, k);
       if (!set || !read) continue;
       const double turns = std::round((*read - *set) / kTurn_deg);
       if (turns == 0) continue;

@@ -3,15 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "tools/sheet/sheet_number.h"
-#include "tools/text/numbers.h"
-
 namespace vernier::importer {
-
-std::optional<double> cell_number(const sheet::Sheet& sheet, std::size_t row, std::size_t column) {
-  const auto number = sheet::plain_number(sheet.rows[row][column], sheet.decimal_comma);
-  return number ? text::parse_number(*number) : std::nullopt;
-}
 
 std::optional<format::Unit> sized_unit(const SizedColumn& column) {
   const auto unit = format::find_unit(column.unit);

@@ -29,8 +29,6 @@ struct SizeDoubt {
   std::string text;  // what contradicts the unit, and what to do
 };
 
-/// Returns the number in a cell; nullopt if the cell has no number.
-std::optional<double> cell_number(const sheet::Sheet& sheet, std::size_t row, std::size_t column);
 /// Returns the unit of a column of lengths or angles; nullopt for other columns.
 std::optional<format::Unit> sized_unit(const SizedColumn& column);
 /// Returns a size with a unit that suits it. `size`: in mm, or in deg if `angle` is true.

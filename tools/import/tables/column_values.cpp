@@ -15,8 +15,7 @@
 #include "tools/format/units.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/maths/median.h"
-#include "tools/sheet/sheet_number.h"
-#include "tools/text/numbers.h"
+#include "tools/sheet/sheet.h"
 
 namespace vernier::importer {
 namespace {
@@ -47,11 +46,6 @@ double factor_of(const std::string& unit) {
   return unit.empty() || !found ? 1 : found->factor;
 }
 
-std::optional<double> value_of(const sheet::Sheet& sheet, std::size_t row, std::size_t column) {
-  const auto number = sheet::plain_number(sheet.rows[row][column], sheet.decimal_comma);
-  return number ? text::parse_number(*number) : std::nullopt;
-}
-
 Pairs pairs_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                const std::vector<SheetColumn>& columns, std::size_t target, std::size_t reading) {
   const double of_target = factor_of(columns[target].unit);
@@ -59,7 +53,7 @@ Pairs pairs_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
   const double of_reading = columns[reading].unit.empty() ? of_target : factor_of(columns[reading].unit);
   Pairs pairs;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const auto at = value_of(sheet, row, target), read = value_of(sheet, row, reading);
+    const auto at = sheet::number_at(sheet, row, target), read = sheet::number_at(sheet, row, reading);
     if (!at || !read) continue;
     pairs.target.push_back(*at * of_target);
     pairs.reading.push_back(*read * of_reading);

@@ -16,8 +16,7 @@
 #include "tools/import/order/row_order.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/words/sheet_words.h"
-#include "tools/sheet/sheet_number.h"
-#include "tools/text/numbers.h"
+#include "tools/sheet/sheet.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -76,21 +75,16 @@ struct Steps {
   }
 };
 
-std::optional<double> value_at(const sheet::Sheet& sheet, std::size_t row, std::size_t column) {
-  const auto number = sheet::plain_number(sheet.rows[row][column], sheet.decimal_comma);
-  return number ? text::parse_number(*number) : std::nullopt;
-}
-
 std::map<std::string, Steps> steps_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                       std::size_t position, std::size_t code) {
   std::map<std::string, Steps> steps;
   std::optional<std::size_t> before;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     if (sheet::is_blank(sheet.rows[row])) continue;
-    const auto here = value_at(sheet, row, position);
+    const auto here = sheet::number_at(sheet, row, position);
     if (before && here && code_of(sheet.rows[*before][code]) == code_of(sheet.rows[row][code])) {
       Steps& of = steps[code_of(sheet.rows[row][code])];
-      const auto there = value_at(sheet, *before, position);
+      const auto there = sheet::number_at(sheet, *before, position);
       of.up += there && *here > *there ? 1 : 0;
       of.down += there && *here < *there ? 1 : 0;
     }
@@ -182,7 +176,7 @@ Blocks blocks_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
     if (blocks.line == 0) blocks.line = sheet.line[begin];
   };
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const auto here = value_at(sheet, row, position);
+    const auto here = sheet::number_at(sheet, row, position);
     if (sheet::is_blank(sheet.rows[row]) || !here) continue;
     const int said = sense_of_code(code_of(sheet.rows[row][k]));
     const int moved = !before ? 0 : *here > *before ? 1 : *here < *before ? -1 : 0;

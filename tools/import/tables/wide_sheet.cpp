@@ -17,10 +17,8 @@
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
 #include "tools/import/words/title_units.h"
-#include "tools/sheet/sheet_number.h"
 #include "tools/sheet/unit_factor.h"
 #include "tools/text/error.h"
-#include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -190,8 +188,7 @@ double spread_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
   double least = 0, most = 0;
   bool any = false;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const auto number = sheet::plain_number(sheet.rows[row][column], sheet.decimal_comma);
-    const auto value = number ? text::parse_number(*number) : std::nullopt;
+    const auto value = sheet::number_at(sheet, row, column);
     if (!value) continue;
     least = any ? std::min(least, *value) : *value;
     most = any ? std::max(most, *value) : *value;
@@ -251,8 +248,7 @@ int order_of_positions(const sheet::Sheet& sheet, const sheet::SheetTable& table
   std::size_t rows = 0;
   int order = 0;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const auto number = sheet::plain_number(sheet.rows[row][position], sheet.decimal_comma);
-    const auto value = number ? text::parse_number(*number) : std::nullopt;
+    const auto value = sheet::number_at(sheet, row, position);
     if (!value) continue;
     if (before) {
       const int step = *value > *before ? 1 : *value < *before ? -1 : 0;
