@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "tools/fit/coverage/reading_direction.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/sanity.h"
 #include "tools/fit/size.h"
+#include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/median.h"
@@ -183,6 +186,31 @@ std::string varied_lengths(const model::Machine& machine, const model::Measureme
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// Returns the names of the touched planes of unknown position if every fit row touches one of these with the
+/// same probe beside the tool point. Then a bow of a plane gives the same readings as an axis that is not
+/// straight: the bow is at the touched point, the error of the axis at its position.
+std::string planes_of_one_probe(const model::Machine& machine, const model::Measurement& m) {
+  std::set<std::string> names;
+  bool beside = false;
+  std::array<std::optional<std::pair<double, double>>, format::columns::kProbe.size()> range;
+  for (std::size_t row = 0; row < m.rows(); ++row) {
+    if (m.check[row] != 0) continue;
+    const std::size_t thing = m.thing_of(row);
+    if (thing == model::kNoThing || m.things[thing].artefact.type != model::ArtefactType::kPlane ||
+        m.things[thing].in_measuring_frame())
+      return {};
+    names.insert(m.things[thing].label);
+    for (std::size_t k = 0; k < range.size(); ++k) {
+      const auto input = machine.find_input(format::columns::kProbe[k]);
+      const double at = input ? m.states.input[*input][static_cast<Index>(row)] : 0;
+      beside = beside || at != 0;
+      if (!range[k]) range[k] = {at, at};
+      if (at != range[k]->first) return {};
+    }
+  }
+  return beside ? fmt::format("{}", fmt::join(names, ", ")) : "";
+}
+
 /// Findings about lengths that give the machine its size and whose own errors no reading of this fit shows.
 void add_exact_lengths(const FitResult& result, const model::Measurement& m,
                        std::vector<model::FitRecord::Finding>& list) {
@@ -263,6 +291,13 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
       !far.empty())
     list.push_back({"far-from-nominal", 1, far});
   add_exact_lengths(result, m, list);
+  if (const std::string names = planes_of_one_probe(result.machine, m); !names.empty())
+    list.push_back(
+        {kFlatnessAssumed, 0,
+         fmt::format("{} was taken as flat. All rows touch it with one probe beside the tool point: a "
+                     "bow of it counts as an error of the axes. Touch some points with the tool point "
+                     "(the nozzle) too.",
+                     names)});
   const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],
                          1e3 * record.discrepancy_mm[2]);
   if (lack_um.maxCoeff() > 0) {

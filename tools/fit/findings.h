@@ -28,9 +28,14 @@ Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurem
 /// dependences), `not-distinguished` (number of alternatives), `absurd`, `not-converged`, `size-unknown` (no
 /// reading has a known length; value: the plausible share), `taken-as-exact` (a length that gives the machine
 /// its size, and whose own error no reading shows; value 0), `far-from-nominal` (a fit of touches gave
-/// another machine than that of the file). `record`: the fit record, complete except for the findings.
+/// another machine than that of the file), `flatness-assumed` (one probe beside the tool point touched planes
+/// of unknown position, and there are no other rows; value 0). `record`: the fit record, complete except for
+/// the findings.
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);
+
+/// Code of the finding that a bow of the touched plane counts as an error of the axes.
+inline constexpr const char* kFlatnessAssumed = "flatness-assumed";
 
 /// Without a column setup each run is a set-up of its own, and then equal targets of two runs are no repeats.
 /// True if the noise of the readings is unknown for this reason alone.

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 
+#include "tools/fit/findings.h"
 #include "tools/fit/fit.h"
 #include "tools/maths/factors.h"
 #include "tools/model/fit_record.h"
@@ -254,6 +255,29 @@ TEST(FitOfThings, ATouchedPlaneIsInTheRecord) {
   EXPECT_NEAR(-plane.normal[0] / plane.normal[2], 0.001, 1e-8);
   EXPECT_NEAR(-plane.normal[1] / plane.normal[2], -0.002, 1e-8);
   EXPECT_NEAR(plane.place_mm[2], 2 + 0.001 * plane.place_mm[0] - 0.002 * plane.place_mm[1], 1e-6);
+}
+
+/// Touches of a bed with a probe at `offset` beside the nozzle, and with the nozzle at one point if `nozzle`.
+FitResult fit_of_probed_bed(double offset_mm, bool nozzle) {
+  const model::Machine printer = model::parse_machine(
+      R"XML(<machine name="printer"><variables><static><sag value="0" nominal="0" unit="mm"/></static>
+  <machineaxes><X/><Y/><Z/></machineaxes>
+  <inputs><probeX unit="mm" reference="0"/><probeY unit="mm" reference="0"/></inputs>
+  <artefact name="bed" type="plane"/></variables><transforms branch="tool">
+  <sixdof n="1" X="X" Y="Y" Z="Z+sag*X*X/10000"/><sixdof n="2" X="probeX" Y="probeY"/></transforms></machine>)XML",
+      "printer.xml");
+  std::string rows = "X[mm],Y[mm],Z[mm],probeX[mm],probeY[mm],on,u[mm]\n";
+  for (const double x : {0, 50, 100, 150, 200})
+    for (const double y : {0, 50, 150})
+      rows += fmt::format("{},{},{:.6f},{},0,bed,0.005\n", x, y, 1e-5 * x * (200 - x), offset_mm);
+  if (nozzle) rows += "100,50,0.1,0,0,bed,0.005\n";
+  return vernier::fit::fit(printer, model::parse_measurement(rows, "bed.csv", printer), {});
+}
+
+TEST(FitOfThings, APlaneThatOnlyAProbeBesideTheToolTouchedIsSaidToBeTakenAsFlat) {
+  EXPECT_TRUE(has(fit_of_probed_bed(-30, false), kFlatnessAssumed));
+  EXPECT_FALSE(has(fit_of_probed_bed(-30, true), kFlatnessAssumed));
+  EXPECT_FALSE(has(fit_of_probed_bed(0, false), kFlatnessAssumed));
 }
 
 /// A bed mesh moves Z by the height of the bed only: the table of Z stays at 0 over its whole travel,

@@ -2,11 +2,14 @@
 // `vernier export klipper|rrf|marlin|grbl`.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/out/exporting.h"
 #include "tools/exchange/printer/correction.h"
 #include "tools/exchange/printer/firmware_files.h"
+#include "tools/fit/findings.h"
 #include "tools/kinematics/at.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/measurement.h"
@@ -43,6 +46,7 @@ Json shape_json(const exchange::BedShape& shape) {
           {"probe_offset_mm", shape.offset},
           {"check_rows", shape.checks},
           {"check_rms_um", shape.checks > 0 ? Json(shape.check_rms_um) : Json(nullptr)},
+          {"repeat_rms_um", shape.repeat_rms_um > 0 ? Json(shape.repeat_rms_um) : Json(nullptr)},
           {"undetermined_um", shape.undetermined_um}};
 }
 
@@ -61,6 +65,12 @@ void print_shape(std::FILE* out, const exchange::BedShape& shape) {
         "the heights follow {} touches of a probe at ({:g}, {:g}) mm beside the nozzle, and the difference "
         "between nozzle and probe at {} touches of the nozzle\n",
         shape.by_probe, shape.offset[0], shape.offset[1], shape.by_nozzle);
+  if (shape.repeat_rms_um > 0)
+    fmt::print(
+        out,
+        "touches of one place differ by {:.3g} um rms from their mean; a bed that was warmer in some of "
+        "the touches has another shape there\n",
+        shape.repeat_rms_um);
   if (shape.checks > 0)
     fmt::print(out, "check rows with the nozzle: {}, rms of the height error {:.3g} um\n", shape.checks,
                shape.check_rms_um);
@@ -104,20 +114,45 @@ Json errors_json(const exchange::PrinterErrors& errors) {
             {"rms_after_um", errors.rms_after_um}}}};
 }
 
+/// True if the touches of the last fit do not distinguish the bed from the axes.
+bool is_bed_or_axes(const model::Machine& machine) {
+  const auto& findings = machine.fitted->findings;
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const auto& finding) { return finding.code == fit::kFlatnessAssumed; });
+}
+
+/// The machine whose errors the files correct. If touches of one probe beside the nozzle are all that the fit
+/// had, the heights follow the touches as those that the firmware measures itself: the axes are taken as
+/// straight. The errors of the fitted axes would be at other positions than the heights that show them.
+model::Machine machine_to_correct(const model::Machine& fitted, const std::optional<exchange::Bed>& bed,
+                                  const PrinterArguments& arguments) {
+  if (!bed || !is_bed_or_axes(fitted)) {
+    require_safe(fitted, arguments.common, true);
+    return fitted;
+  }
+  if (arguments.touches.empty())
+    throw text::InputError(
+        {arguments.common.machine, 0}, bed->name,
+        "the fit took the bed as flat, and only a probe beside the nozzle touched it: these readings do not "
+        "distinguish a bow of the bed from axes that are not straight. Give the touches (--touches FILE), "
+        "and "
+        "a few touches of the nozzle if possible (a second --touches); --bed none leaves the bed out");
+  return model::nominal_machine(fitted);
+}
+
 void export_printer(const PrinterArguments& arguments, Firmware firmware, const char* name) {
   const ExchangeArguments& common = arguments.common;
-  const model::Machine machine = read_model(common.machine);
+  const model::Machine fitted = read_model(common.machine);
   const exchange::PresentSetting present = present_of(arguments);
   if (firmware == Firmware::kGrbl && !present.steps)
     throw text::InputError(
         "grbl can store only steps per mm: give the present steps per mm with --steps X,Y,Z");
-  const exchange::ThreeAxes axes = exchange::three_axes(machine);
-  const model::States at = state_of(machine, common);
-  require_safe(machine, common, true);
+  const exchange::ThreeAxes axes = exchange::three_axes(fitted);
   const exchange::PrinterFeatures features = exchange::features_of(firmware, present);
-  std::optional<exchange::Bed> bed = features.mesh && arguments.bed != kNoBed
-                                         ? exchange::bed_of(machine, axes, arguments.bed)
-                                         : std::nullopt;
+  std::optional<exchange::Bed> bed =
+      features.mesh && arguments.bed != kNoBed ? exchange::bed_of(fitted, axes, arguments.bed) : std::nullopt;
+  const model::Machine machine = machine_to_correct(fitted, bed, arguments);
+  const model::States at = state_of(machine, common);
   if (!arguments.touches.empty() && !bed)
     throw text::InputError(
         "--touches: the last fit of this machine has no plane that was touched, or --bed is none");

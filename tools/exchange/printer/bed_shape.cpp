@@ -18,6 +18,9 @@ using Eigen::Index;
 using Eigen::Matrix3Xd;
 using Eigen::VectorXd;
 
+/// Touches that are closer to each other touch one place of the bed.
+constexpr double kOnePlace_mm = 1;
+
 /// Averages of the points that are closer than `distance_mm` to the first of them.
 Matrix3Xd merged(const Matrix3Xd& points, double distance_mm) {
   std::vector<Eigen::Vector3d> first, sum;
@@ -59,7 +62,8 @@ Matrix3Xd points_of(const std::vector<BedTouch>& touches, bool of_nozzle, bool n
 Surface::Surface(const Matrix3Xd& points) {
   constexpr Index kMost = 2500;  // points of a dense system: some seconds
   Matrix3Xd knots = points;
-  for (double distance_mm = 1; distance_mm == 1 || knots.cols() > kMost; distance_mm *= 1.5)
+  for (double distance_mm = kOnePlace_mm; distance_mm == kOnePlace_mm || knots.cols() > kMost;
+       distance_mm *= 1.5)
     knots = merged(points, distance_mm);
   const Index n = knots.cols();
   if (n == 0) return;
@@ -106,6 +110,7 @@ BedShape::BedShape(const std::vector<BedTouch>& touches) {
   for (const BedTouch& touch : touches)
     if (!touch.check && !touch.of_nozzle()) offset = touch.offset;
   if (by_probe > 0) add_difference(touches);
+  judge_repeats(touches);
   judge(touches);
 }
 
@@ -147,6 +152,21 @@ void BedShape::add_difference(const std::vector<BedTouch>& touches) {
     off[i] = nozzle(2, i) - surface_.at(nozzle(0, i), nozzle(1, i));
   }
   difference_ = maths::least_norm(columns, off);
+}
+
+void BedShape::judge_repeats(const std::vector<BedTouch>& touches) {
+  double squares = 0, freedom = 0;
+  for (const bool of_nozzle : {false, true}) {
+    const Matrix3Xd points = points_of(touches, of_nozzle);
+    const Matrix3Xd places = merged(points, kOnePlace_mm);
+    for (Index i = 0; i < points.cols(); ++i) {
+      Index nearest = 0;
+      (places.topRows<2>().colwise() - points.col(i).head<2>()).colwise().squaredNorm().minCoeff(&nearest);
+      squares += std::pow(points(2, i) - places(2, nearest), 2);
+    }
+    freedom += static_cast<double>(points.cols() - places.cols());
+  }
+  repeat_rms_um = freedom > 0 ? 1000 * std::sqrt(squares / freedom) : 0;
 }
 
 void BedShape::judge(const std::vector<BedTouch>& touches) {

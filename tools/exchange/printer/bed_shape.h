@@ -57,7 +57,9 @@ class BedShape {
   std::size_t by_probe = 0, by_nozzle = 0;  // numbers of touches in fit rows
   std::size_t checks = 0;                   // number of touches of the nozzle in check rows
   double check_rms_um = 0;                  // heights at these check rows without a constant offset, um
-  std::array<double, 2> offset{};           // of the probe; 0 without touches of a probe
+  /// Rms of the touches of one place about their mean, um; 0 if no place was touched twice
+  double repeat_rms_um = 0;
+  std::array<double, 2> offset{};  // of the probe; 0 without touches of a probe
   /// Half of the range of the heights that touches of a probe alone do not determine, um; 0 if fit rows touch
   /// with the nozzle too. For the nominal machine: the model is not confirmed at the nozzle. The touches do
   /// not show whether a height belongs to the bed (at the touched point) or to a carriage (at the position of
@@ -67,6 +69,7 @@ class BedShape {
  private:
   void add_difference(const std::vector<BedTouch>& touches);
   void judge(const std::vector<BedTouch>& touches);
+  void judge_repeats(const std::vector<BedTouch>& touches);
 
   Surface surface_;
   Eigen::VectorXd difference_;              // coefficients of the polynomial
