@@ -776,8 +776,8 @@ double Finder::p_value(std::size_t item) const {
   return chance_of(item, pool_[item].columns, evidence_.residual(), evidence_.freedom());
 }
 
-double Finder::p_value_beside(std::size_t item) const {
-  const Eigen::MatrixXd beside = maths::orthonormal(pool_.columns(chosen_), 1e-6, nullptr);
+double Finder::p_value_beside(std::size_t item, const std::vector<std::size_t>& others) const {
+  const Eigen::MatrixXd beside = maths::orthonormal(pool_.columns(others), 1e-6, nullptr);
   const Eigen::VectorXd left = evidence_.residual() - beside * (beside.transpose() * evidence_.residual());
   Eigen::MatrixXd own = pool_[item].columns - beside * (beside.transpose() * pool_[item].columns);
   // The small difference between a copy and its original is rounding, or the curvature of a

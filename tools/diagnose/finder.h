@@ -70,9 +70,9 @@ class Finder {
   /// Returns the p-value of a candidate: the probability that noise alone decreases the BIC as much, times
   /// the number of tested candidates (Bonferroni).
   double p_value(std::size_t item) const;
-  /// Returns the p-value of a candidate that is added to the accepted set. The p-value is 1 if an accepted
-  /// effect has the same columns.
-  double p_value_beside(std::size_t item) const;
+  /// Returns the p-value of a candidate that is added to `others`. The p-value is 1 if one of these has the
+  /// same columns.
+  double p_value_beside(std::size_t item, const std::vector<std::size_t>& others) const;
   /// Returns the natural logarithm of the likelihood ratio of held-out runs: the model with an accepted
   /// effect against the model without this effect. Each run is predicted from the other runs
   /// (leave-one-run-out).

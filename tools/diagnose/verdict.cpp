@@ -460,7 +460,7 @@ class Decision {
   bool something_stands_out() const {
     for (std::size_t item = 0; item < pool_.size(); ++item) {
       const bool chosen = std::find(accepted_.begin(), accepted_.end(), item) != accepted_.end();
-      if (!chosen && finder_.p_value_beside(item) < limits_.stands_out) return true;
+      if (!chosen && finder_.p_value_beside(item, accepted_) < limits_.stands_out) return true;
     }
     return false;
   }
@@ -493,7 +493,10 @@ class Decision {
       if (freedom < limits_.enough_readings) return !structured && stands_without_u();
     }
     const double sigmas = (reduced - 1) / std::sqrt(2 / freedom);
-    return (sigmas < limits_.noise_sigmas || reduced < limits_.doubtful_uncertainty) && !structured;
+    if (structured) return false;
+    if (sigmas < limits_.noise_sigmas) return true;
+    // u may be too small. The check rows can refuse the form of an effect whose error is real.
+    return reduced < limits_.doubtful_uncertainty && !something_stands_out();
   }
 
   /// Is the first effect larger than the residual beside it, and is most of chi^2 explained?
