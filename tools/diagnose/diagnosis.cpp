@@ -180,8 +180,6 @@ class Diagnoser {
   std::optional<StepEvidence> confirmed_by(const Proof& proof, std::size_t item) const {
     const ProofThresholds& limits = options_.thresholds.proof;
     if (proof.evidence < proof.asked(limits)) return std::nullopt;
-    // The many readings of one instrument must not hide that those of another contradict the step.
-    if (is_contradicted(proof)) return std::nullopt;
     // A step of one run does not apply to another run. It is sufficient that rows of other runs
     // become worse with it.
     if (!pool_.candidate(item).choice.runs.empty() && proof.evidence < 0) return std::nullopt;
@@ -191,18 +189,23 @@ class Diagnoser {
     return StepEvidence{held_out, false};
   }
 
-  bool is_contradicted(const Proof& proof) const {
-    return proof.least_of_file < -options_.thresholds.proof.contradiction;
+  /// Variance of the independent noise of a weighted reading beside a fit, for proof_on_check_rows().
+  double variance_beside(const fit::FitResult& fit) const {
+    if (!finder_.evidence().noise_of_file().independent()) return 1;
+    const double variance = fit.chi_square / std::max(1.0, fit.freedom);
+    return finder_.evidence().noise_known() ? std::max(1.0, variance) : variance;
   }
 
   Proof proof_of(const fit::FitResult& before, const fit::FitResult& after) const {
-    const fit::NoiseModel noise = finder_.evidence().noise_of_file();
-    double variance = 1;
-    if (noise.independent()) {
-      variance = after.chi_square / std::max(1.0, after.freedom);
-      if (finder_.evidence().noise_known()) variance = std::max(1.0, variance);
-    }
-    return proof_on_check_rows(measurement_, before.residual, after.residual, noise, variance);
+    return proof_on_check_rows(measurement_, before.residual, after.residual,
+                               finder_.evidence().noise_of_file(), variance_beside(after));
+  }
+
+  /// The many readings of one instrument must not hide that those of another contradict a step.
+  bool is_contradicted(const Proof& proof, const fit::FitResult& before, const fit::FitResult& after) const {
+    return is_contradicted_by_a_file(proof, options_.thresholds.proof,
+                                     model::rebind(measurement_, base_.machine, after.machine), before, after,
+                                     finder_.evidence().noise_of_file(), variance_beside(after));
   }
 
   /// Returns the fitted machine as a file, with the noise findings of its own residual. The search
@@ -254,9 +257,11 @@ class Diagnoser {
         continue;
       }
       const Proof proof = proof_of(steps.end, fitted.fit);
-      const std::optional<StepEvidence> confirmation = confirmed_by(proof, item);
+      const bool contradicted = is_contradicted(proof, steps.end, fitted.fit);
+      const std::optional<StepEvidence> confirmation =
+          contradicted ? std::nullopt : confirmed_by(proof, item);
       if (!confirmation) {
-        if (is_contradicted(proof)) steps.contradicted.push_back(item);
+        if (contradicted) steps.contradicted.push_back(item);
         steps.not_confirmed.push_back(pool_.candidate(item).spoken);
         exclude();
         continue;

@@ -75,14 +75,21 @@ void Finder::find() {
 }
 
 void Finder::find_without(const std::vector<std::size_t>& items) {
-  for (const std::size_t item : items)
-    for (std::size_t other = 0; other < pool_.size(); ++other)
-      if (!pool_[other].banned && (other == item || pool_.same_columns(item, other)))
-        pool_.ban(other, "test `held out`: check rows contradict the effect");
+  contradicted_.insert(contradicted_.end(), items.begin(), items.end());
+  ban_contradicted();
   select_again();
+  // A contradicted effect took part of what another one explains, which no scan found beside it.
+  search_beside_chosen();
   accept();
   if (!fit::has_uncertainty(evidence_.measurement())) name_simplest();
   if (!evidence_.noise().independent()) order_by_size();
+}
+
+void Finder::ban_contradicted() {
+  for (const std::size_t item : contradicted_)
+    for (std::size_t other = 0; other < pool_.size(); ++other)
+      if (!pool_[other].banned && (other == item || pool_.same_columns(item, other)))
+        pool_.ban(other, "test `held out`: check rows contradict the effect");
 }
 
 void Finder::order_by_size() {
@@ -124,6 +131,7 @@ void Finder::scan_beside(const std::vector<std::size_t>& items, double from, dou
       first);
   for (Scored& fine : scanner_.scan_fine(accepted.basis, first)) scored.push_back(std::move(fine));
   pool_.add(scored, accepted.basis);
+  ban_contradicted();
 }
 
 std::size_t Finder::thermal_items() const {
@@ -324,6 +332,10 @@ void Finder::search() {
   starts_.clear();
   scan_beside({}, 0.05, 0.3);
   select_again();
+  search_beside_chosen();
+}
+
+void Finder::search_beside_chosen() {
   constexpr int kMostScans = 6;     // of all candidates beside the chosen ones, at most
   constexpr double kSettled = 0.1;  // decrease of the BIC: far below any evidence
   for (int round = 0; round < kMostScans && !chosen_.empty(); ++round) {

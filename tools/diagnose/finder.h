@@ -47,7 +47,7 @@ class Finder {
   /// recorded quantities.
   void find();
 
-  /// Selects the set again without these candidates, and without those of the same columns.
+  /// Searches on without these candidates, and without those of the same columns.
   void find_without(const std::vector<std::size_t>& items);
 
   /// Returns the indices of the accepted effects in the pool; the effect that explains most is first.
@@ -100,6 +100,10 @@ class Finder {
   bool linear_down_to_noise() const;
 
  private:
+  /// Scans all candidates beside the accepted ones and selects again, until the set no longer changes.
+  void search_beside_chosen();
+  /// Excludes the candidates that held-out rows contradict, and those of the same columns.
+  void ban_contradicted();
   void scan_beside(const std::vector<std::size_t>& items, double from, double to, std::size_t first = 0);
   /// Searches the thermal responses of the structures (responses.h). Accepted effects that do not depend on a
   /// temperature stay in the model.
@@ -244,6 +248,7 @@ class Finder {
   SelectionProblem problem_;
   std::vector<std::size_t> entry_item_, chosen_;
   std::vector<std::vector<std::size_t>> starts_;  // sets of items from which a selection begins too
+  std::vector<std::size_t> contradicted_;         // items that held-out rows contradict
   double criterion_ = 0, chi_square_ = 0;
 };
 

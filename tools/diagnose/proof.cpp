@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
+
+#include "tools/model/chain/prediction.h"
 
 namespace vernier::diagnose {
 
@@ -13,33 +16,79 @@ double Proof::asked(const ProofThresholds& thresholds) const {
   return std::clamp(expected - thresholds.loss_sigmas * std::sqrt(2 * expected), 0.0, thresholds.evidence);
 }
 
-Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,
-                          const Eigen::VectorXd& after, const fit::NoiseModel& noise, double variance) {
-  Proof proof;
+namespace {
+
+/// Indices of the check observations.
+std::vector<std::size_t> check_observations(const model::Measurement& rows) {
   std::vector<std::size_t> check;
   for (std::size_t i = 0; i < rows.observations.size(); ++i)
     if (rows.check[rows.observations[i].row] != 0) check.push_back(i);
-  if (check.empty() || before.size() != after.size()) return proof;
-  Eigen::MatrixXd left(static_cast<Eigen::Index>(check.size()), 2);
+  return check;
+}
+
+/// Columns over the check observations in units of the independent noise, with independent errors.
+Eigen::MatrixXd in_units_of_noise(const model::Measurement& rows, const std::vector<std::size_t>& check,
+                                  Eigen::MatrixXd columns, const fit::NoiseModel& noise, double variance) {
   for (std::size_t i = 0; i < check.size(); ++i) {
     const double u = model::uncertainty_of(rows, rows.observations[check[i]]);
-    const double weight = (u > 0 ? 1 / u : 1) / std::sqrt(variance);
-    const auto from = static_cast<Eigen::Index>(check[i]), at = static_cast<Eigen::Index>(i);
-    left(at, 0) = weight * before[from];
-    left(at, 1) = weight * after[from];
+    columns.row(static_cast<Eigen::Index>(i)) *= (u > 0 ? 1 / u : 1) / std::sqrt(variance);
   }
-  if (!noise.independent()) fit::whiten(fit::noise_layout(rows, check), noise, left);
-  proof.evidence = (left.col(0).squaredNorm() - left.col(1).squaredNorm()) / 2;
-  proof.expected = (left.col(0) - left.col(1)).squaredNorm() / 2;
-  std::map<std::size_t, double> of_file;
+  if (!noise.independent()) fit::whiten(fit::noise_layout(rows, check), noise, columns);
+  return columns;
+}
+
+/// Variance of the evidence of one file that the uncertainty of the parameters after the step adds.
+double variance_by_parameters(const model::Measurement& rows, std::size_t file, const fit::FitResult& before,
+                              const fit::FitResult& after, const fit::NoiseModel& noise, double variance) {
+  const std::vector<std::size_t> check = check_observations(rows);
+  const Eigen::MatrixXd jacobian = model::linearise(after.machine, rows, after.parameters).jacobian;
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(check.size()), jacobian.cols() + 1);
+  columns << jacobian(check, Eigen::all), (before.residual - after.residual)(check);
+  columns = in_units_of_noise(rows, check, std::move(columns), noise, variance);
+  Eigen::VectorXd change = columns.rightCols<1>();
+  for (std::size_t i = 0; i < check.size(); ++i)
+    if (rows.file[rows.observations[check[i]].row] != file) change[static_cast<Eigen::Index>(i)] = 0;
+  const Eigen::VectorXd moved = columns.leftCols(jacobian.cols()).transpose() * change;
+  return moved.dot(after.covariance * moved);
+}
+
+}  // namespace
+
+bool is_contradicted_by_a_file(const Proof& proof, const ProofThresholds& thresholds,
+                               const model::Measurement& rows, const fit::FitResult& before,
+                               const fit::FitResult& after, const fit::NoiseModel& noise, double variance) {
+  return std::any_of(proof.files.begin(), proof.files.end(), [&](const Proof::OfFile& one) {
+    if (one.evidence >= -thresholds.contradiction) return false;
+    const double std =
+        std::sqrt(2 * one.expected + variance_by_parameters(rows, one.file, before, after, noise, variance));
+    return one.evidence < one.expected - thresholds.loss_sigmas * std;
+  });
+}
+
+Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,
+                          const Eigen::VectorXd& after, const fit::NoiseModel& noise, double variance) {
+  Proof proof;
+  const std::vector<std::size_t> check = check_observations(rows);
+  if (check.empty() || before.size() != after.size()) return proof;
+  Eigen::MatrixXd left(static_cast<Eigen::Index>(check.size()), 2);
+  left << before(check), after(check);
+  left = in_units_of_noise(rows, check, std::move(left), noise, variance);
+  std::map<std::size_t, Proof::OfFile> of_file;
   for (std::size_t i = 0; i < check.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    of_file[rows.file[rows.observations[check[i]].row]] +=
-        (left(at, 0) * left(at, 0) - left(at, 1) * left(at, 1)) / 2;
+    const Eigen::RowVector2d of_row = left.row(static_cast<Eigen::Index>(i));
+    const double evidence = (of_row[0] * of_row[0] - of_row[1] * of_row[1]) / 2,
+                 expected = std::pow(of_row[0] - of_row[1], 2) / 2;
+    proof.evidence += evidence;
+    proof.expected += expected;
+    Proof::OfFile& own = of_file[rows.file[rows.observations[check[i]].row]];
+    own.evidence += evidence;
+    own.expected += expected;
   }
   if (of_file.size() > 1)
-    for (const auto& [file, evidence] : of_file)
-      proof.least_of_file = std::min(proof.least_of_file, evidence);
+    for (auto& [file, own] : of_file) {
+      own.file = file;
+      proof.files.push_back(own);
+    }
   return proof;
 }
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
+#include <vector>
 
 #include "tools/diagnose/propose/thresholds.h"
 #include "tools/fit/noise/noise.h"
+#include "tools/fit/types.h"
 #include "tools/model/measurement.h"
 
 namespace vernier::diagnose {
@@ -14,8 +17,12 @@ struct Proof {
                         // with the step against model without the step
   double expected = 0;  // mean of the evidence if the step is true; its negative if the step is absent. The
                         // variance of the evidence is twice this mean.
-  double least_of_file =
-      0;  // smallest evidence of the held-out rows of one file; 0 if there is one file only
+  /// The held-out rows of one file.
+  struct OfFile {
+    std::size_t file = 0;  // its index in the measurement
+    double evidence = 0, expected = 0;
+  };
+  std::vector<OfFile> files{};  // empty if the held-out rows are of one file
   /// Returns the required evidence (natural logarithm) for accepting the step. The required evidence is odds
   /// of 20 to 1. If 99 of 100 true effects with this `expected` reach only smaller odds, the smaller odds are
   /// required, but the step must not increase the error of the held-out rows. If a true effect does not reach
@@ -23,6 +30,13 @@ struct Proof {
   /// more than an effect without influence increases it (kEvidenceOfNothing).
   double asked(const ProofThresholds& thresholds) const;
 };
+
+/// Returns true if the held-out rows of one file contradict the step: their evidence against it is very
+/// strong, and less than one true step in a hundred has such an evidence. `before`, `after`: fits without and
+/// with the step; `rows`: bound to the machine of `after`; `noise`, `variance`: as for proof_on_check_rows().
+bool is_contradicted_by_a_file(const Proof& proof, const ProofThresholds& thresholds,
+                               const model::Measurement& rows, const fit::FitResult& before,
+                               const fit::FitResult& after, const fit::NoiseModel& noise, double variance);
 
 /// Evaluates the check rows with the model before and after one step. `before`, `after`: residuals (measured
 /// - model) of all observations with the two models; `noise`: correlation of the errors of the readings.

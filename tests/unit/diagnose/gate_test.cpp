@@ -9,6 +9,7 @@
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/proof.h"
 #include "tools/diagnose/refit.h"
+#include "tools/fit/fit.h"
 #include "tools/model/machine_reader.h"
 
 namespace vernier::gate_test {
@@ -68,17 +69,29 @@ TEST(Gate, TheCheckRowsOfOneFileAloneContradictAStep) {
   Eigen::VectorXd before = Eigen::VectorXd::Constant(count, 0.002), after = before / 2;
   const Proof one = proof_on_check_rows(rows, before, after, {}, 1);
   EXPECT_GT(one.evidence, 0);
-  EXPECT_EQ(one.least_of_file, 0) << "one file has no other beside it";
+  EXPECT_TRUE(one.files.empty()) << "one file has no other beside it";
 
   rows.files.push_back("tracker.csv");
   std::size_t last = 0;
   for (std::size_t i = 0; i < rows.observations.size(); ++i)
     if (rows.check[rows.observations[i].row] != 0) last = i;
   rows.file[rows.observations[last].row] = 1;
-  after[static_cast<Eigen::Index>(last)] = 0.004;
+  after[static_cast<Eigen::Index>(last)] = 0.006;
   const Proof two = proof_on_check_rows(rows, before, after, {}, 1);
-  const double u = uncertainty_of(rows, rows.observations[last]), unit = u > 0 ? u : 1;
-  EXPECT_NEAR(two.least_of_file, (0.002 * 0.002 - 0.004 * 0.004) / 2 / (unit * unit), 1e-12);
+  const double u = uncertainty_of(rows, rows.observations[last]);
+  ASSERT_EQ(two.files.size(), 2U);
+  EXPECT_EQ(two.files[1].file, 1U);
+  EXPECT_NEAR(two.files[1].evidence, (0.002 * 0.002 - 0.006 * 0.006) / 2 / (u * u), 1e-9);
+  EXPECT_NEAR(two.files[1].expected, 0.004 * 0.004 / 2 / (u * u), 1e-9);
+
+  fit::FitResult with = fit::fit(parse_machine(kAxis, "m.xml"), rows), without = with;
+  without.residual = before;
+  with.residual = after;
+  const ProofThresholds limits;
+  EXPECT_TRUE(is_contradicted_by_a_file(two, limits, rows, without, with, {}, 1));
+  // With parameters that are as uncertain, this row is no surprise.
+  with.covariance = Eigen::MatrixXd::Constant(with.covariance.rows(), with.covariance.cols(), 10 * u * u);
+  EXPECT_FALSE(is_contradicted_by_a_file(two, limits, rows, without, with, {}, 1));
 }
 
 TEST(Gate, AStepThatCheckRowsBearOutIsConfirmedByThem) {
@@ -90,8 +103,8 @@ TEST(Gate, AStepThatCheckRowsBearOutIsConfirmedByThem) {
   EXPECT_GT(answer.ladder.back().evidence.value_or(0), ProofThresholds().evidence);
 }
 
-// Named and "confirmed" before: 24 check rows are too few to deny it at 100 to 1, and they get worse by it. Then
-// "consistent": what check rows refuse stands out of the noise of the fit rows all the same.
+// Named and "confirmed" before: 24 check rows are too few to deny it at 100 to 1, and they get worse by it.
+// Then "consistent": what check rows refuse stands out of the noise of the fit rows all the same.
 TEST(Gate, AStepThatMakesFewCheckRowsWorseIsNotNamed) {
   const Diagnosis answer = diagnosed({0.0006, -0.0006, 1, 20});
 

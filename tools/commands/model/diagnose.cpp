@@ -40,11 +40,13 @@ void print_ladder(std::FILE* out, const diagnose::Diagnosis& d, const model::Mea
     const std::optional<double>& check = lengths ? step.check_rms_um : step.check_rms_urad;
     const bool rises =
         before != nullptr && check && *check > (lengths ? before->check_rms_um : before->check_rms_urad);
-    fmt::print(out, "  {:<56} {:>12} {:>12}{}\n",
-               step.effect.empty() ? "the model as given" : "+ " + step.said,
-               results::error_or_dash(step.rms_um, step.rms_urad),
-               results::error_or_dash(step.check_rms_um, step.check_rms_urad),
-               rises ? "  the check rows (held-out rows) do not confirm this step" : "");
+    fmt::print(
+        out, "  {:<56} {:>12} {:>12}{}\n", step.effect.empty() ? "the model as given" : "+ " + step.said,
+        results::error_or_dash(step.rms_um, step.rms_urad),
+        results::error_or_dash(step.check_rms_um, step.check_rms_urad),
+        !rises                           ? ""
+        : step.confirmed.value_or(false) ? "  more in um; weighted by 1/u^2 the check rows confirm the step"
+                                         : "  the check rows (held-out rows) do not confirm this step");
     before = &step;
   }
   fmt::print(out, "  {:<56} {:>12}\n", "noise", results::error_or_dash(d.base.noise_um, fit::noise_urad(m)));

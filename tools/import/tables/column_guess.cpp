@@ -137,7 +137,7 @@ SheetColumn Guess::column(const sheet::Heading& heading) const {
   SheetColumn column{SheetColumn::Use::kColumn, heading.name, heading.unit, "by its heading"};
   if (is_axis(heading.name) || is_known_name(heading.name) || is_motion(heading.name)) return column;
   if (const auto component = component_error(heading)) return *component;
-  std::string axis;
+  std::string axis, small_axis;
   bool target = false, measured = false, deviation = false;
   const std::vector<std::string> words = heading_words(heading.name);
   for (const std::string& word : words) {
@@ -155,10 +155,16 @@ SheetColumn Guess::column(const sheet::Heading& heading) const {
       deviation = true;
     }
     if (axis.empty() && is_axis(word)) axis = word;
+    if (word == "x" || word == "y" || word == "z") small_axis = word;
   }
   deviation |= sign_said(heading.text, SignPlace::kHeading) != SignSaid::kNothing;
   if (deviation && axis.empty() && is_temperature(heading.unit)) deviation = false;  // "Δ T [K]"
   if (deviation) return {SheetColumn::Use::kDeviation, axis, heading.unit, "by its heading"};
+  // "Ist x": the readings of this format have small letters.
+  if (axis.empty() && measured && !small_axis.empty()) {
+    column.name = small_axis;
+    return column;
+  }
   if (!axis.empty() && measured) {
     if (const auto reading = reading_of(axis)) {
       column.name = *reading;

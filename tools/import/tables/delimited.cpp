@@ -84,8 +84,10 @@ DelimitedFile parse_delimited(const std::string& text, const std::string& file,
     if (fields.size() != wanted)
       throw text::InputError(
           place, bare.substr(0, 40),
-          fmt::format("{} fields in this row; the number of fields in the rows above is {}", fields.size(),
-                      std::to_string(wanted)));
+          fmt::format("{} fields in this row; the number of fields in the rows above is {} (--skip N omits "
+                      "lines of a title, "
+                      "--separator states the separator; vernier import table finds both itself)",
+                      fields.size(), std::to_string(wanted)));
     result.rows.push_back(std::move(fields));
     result.line.push_back(place.line);
   }

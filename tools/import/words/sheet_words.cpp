@@ -18,9 +18,10 @@ const WordSet kTargetWords = {
     "maschine",     "nom",      "sollposition", "zielposition", "nennmaß",  "nennmass",     "nennwert",
     "nennposition", "sollmaß",  "sollmass",     "kommandiert",  "befohlen", "programmiert", "programmed",
     "demand",       "setpoint", "vorgabe",      "vorgabewert"};
-const WordSet kMeasuredWords = {"ist",     "istwert", "istposition", "istmaß", "istmass",  "measured",
-                                "actual",  "act",     "meas",        "mess",   "messwert", "gemessen",
-                                "reading", "tracker", "laser",       "read",   "mes"};
+const WordSet kMeasuredWords = {
+    "ist",  "istwert",   "istposition", "istmaß",       "istmass",  "measured",   "actual", "act",
+    "meas", "mess",      "messwert",    "gemessen",     "reading",  "tracker",    "laser",  "read",
+    "mes",  "messpunkt", "messpunkte",  "messposition", "istpunkt", "antastpunkt"};
 /// The position that the control shows.
 const WordSet kDisplayWords = {"anzeige",   "angezeigt", "angezeigte",     "anzeigewert", "display",
                                "displayed", "dro",       "digitalanzeige", "indicated",   "readout"};
