@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
@@ -221,6 +223,54 @@ TEST_F(OutputFolder, ExportSaysThatItsFiguresAreThoseOfTheModel) {
   ASSERT_EQ(run("vernier export siemens mill.xml -o again"), 0) << said();
   EXPECT_NE(said().find("the model predicts an error of the tool point of "), std::string::npos) << said();
   EXPECT_NE(said().find("um rms of this prediction remain"), std::string::npos) << said();
+}
+
+/// Linear tests of three axes, as rows of `X[mm],Y[mm],Z[mm],dirX,run,x[mm],u[um],role`. `sorted`: the rows
+/// back are in the order of a table, not of their readings.
+std::string laser_rows(int axis) {
+  const std::string letters = "XYZ", small = "xyz";
+  std::string rows = std::string("X[mm],Y[mm],Z[mm],dir") + letters[static_cast<std::size_t>(axis)] +
+                     ",run," + small[static_cast<std::size_t>(axis)] + "[mm],u[um],role\n";
+  int count = 0;
+  for (int run = 1; run <= 3; ++run)
+    for (const int sense : {1, -1})
+      for (int k = 0; k <= 10; ++k) {
+        const int at = 30 * (sense < 0 ? 10 - k : k);
+        std::array<int, 3> position = {150, 150, 150};
+        position[static_cast<std::size_t>(axis)] = at;
+        const double noise = 0.0004 * ((count * 7 + axis) % 5 - 2);
+        const double error = 0.008 * std::sin(at / 60.0 + axis) + 0.004 * sense / (axis + 1) + noise;
+        rows += std::to_string(position[0]) + "," + std::to_string(position[1]) + "," +
+                std::to_string(position[2]) + "," + std::to_string(sense) + "," + std::to_string(run) + "," +
+                std::to_string(at + error) + ",0.6," + (++count % 5 == 0 ? "check" : "fit") + "\n";
+      }
+  return rows;
+}
+
+/// A user with a laser alone had no export: the columns that a laser along an axis cannot see were as
+/// uncertain as before the fit, and the remedy of the refusal held everything.
+TEST_F(OutputFolder, LaserAloneHasAMachineAndTheCommandsToItsExport) {
+  for (int axis = 0; axis < 3; ++axis) write_file(in(std::string(1, "xyz"[axis]) + ".csv"), laser_rows(axis));
+  ASSERT_EQ(
+      run("vernier new column --axis X:0:300 --axis Y:0:300 --axis Z:0:300 --stations X=30 --stations Y=30 "
+          "--stations Z=30 -o mill.xml"),
+      0)
+      << said();
+  ASSERT_EQ(run("vernier improve mill.xml x.csv y.csv z.csv -o out --yes"), 0) << said();
+  const std::string improved = said();
+  EXPECT_NE(improved.find("verdict: missing-effect"), std::string::npos) << improved;
+  ASSERT_NE(
+      improved.find("fit the machine again without the parameters that no reading determines: fit --hold \""),
+      std::string::npos)
+      << improved;
+  const auto begin = improved.find("fit --hold \"") + 12;
+  const std::string held = improved.substr(begin, improved.find('"', begin) - begin);
+  EXPECT_EQ(held.find("table.X.X"), std::string::npos) << held;
+  EXPECT_NE(held.find("table.X.Y,"), std::string::npos) << held;
+  ASSERT_EQ(run("vernier fit \"$(ls out/*_backlash.xml | tail -1)\" x.csv y.csv z.csv --hold \"" + held +
+                "\" -o held.xml && vernier export siemens held.xml -o files"),
+            0)
+      << said();
 }
 
 using Instruments = OutputFolder;
