@@ -443,8 +443,9 @@ class Decision {
     double drift = std::hypot(noise.run, noise.drift);
     for (const fit::NoiseStep& step : noise.steps) drift = std::max(drift, std::abs(step.height));
     if (drift < limits_.drift_share * noise.own || noise.support < limits_.drift_support) return {};
-    return "The readings of the instrument drift or change in steps: " +
-           ::vernier::fit::in_words(noise, answer_.noise_unit) + ".";
+    return "The residual drifts or changes in steps, as the readings of a moving instrument or base do: " +
+           ::vernier::fit::in_words(noise, answer_.noise_unit) +
+           ". An error that the catalogue does not contain can look the same.";
   }
 
   /// True if the errors of single readings, beside drift, set-ups and poses, exceed the stated

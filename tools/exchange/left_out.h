@@ -12,6 +12,7 @@ struct LeftOut {
   std::string what;
   double um = 0;
   bool other_axis = false;  // true: the error depends on the position or direction of another axis
+  bool measured = true;     // false: no reading determines the error, and `um` is only a plausible size
 };
 
 /// Limit below which an error is negligible, um. The limit is a tenth of the finest digit in the tables of

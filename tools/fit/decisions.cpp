@@ -35,6 +35,7 @@ struct DecisionGroup {
   std::vector<std::string> names;
   double reach_um = 0;
   std::size_t open = 0, unseen = 0;  // parameters set by convention, and parameters without readings
+  bool moved = false;                // the readings changed a parameter that they hardly measure
 };
 
 std::string first_names(const std::vector<std::string>& names) {
@@ -47,7 +48,8 @@ std::string first_names(const std::vector<std::string>& names) {
 Decision decision_of(const DecisionGroup& group) {
   const std::string names = first_names(group.names);
   const char* said =
-      group.unseen == group.open ? "not measured; stays at nominal +- scale"
+      group.unseen == group.open && group.moved ? "hardly measured; as uncertain as nominal +- scale"
+      : group.unseen == group.open              ? "not measured; stays at nominal +- scale"
       : group.names.size() > 1
           ? "the readings do not distinguish these parameters, so the fit sets them to the values nearest "
             "nominal"
@@ -90,6 +92,7 @@ std::vector<Decision> decisions_of(const FitResult& result, std::size_t most) {
     group.reach_um = std::max(group.reach_um, reach_um(result, i));
     ++group.open;
     group.unseen += from == Origin::kPrior ? 1 : 0;
+    group.moved = group.moved || result.estimates[i].moved();
   }
   std::vector<Decision> list;
   for (const auto& [name, group] : groups) list.push_back(decision_of(group));

@@ -311,10 +311,6 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                     fmt::format("{}: the model lacks an effect of {:.3g}, {:.3g}, {:.3g} um in x, y, z.",
                                 what, lack_um.x(), lack_um.y(), lack_um.z())});
   }
-  // With an unknown noise, nothing distinguishes a disturbance from a missing effect.
-  const bool may_lack_effect = !result.noise_um || std::any_of(list.begin(), list.end(), [](const auto& one) {
-    return one.code == "something-missing";
-  });
   if (!result.noise_um && result.before.rms_um)
     list.push_back({"noise-unknown", 0,
                     repeats_in_other_runs(m)
@@ -326,11 +322,12 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                     fmt::format("The fit does not improve the machine: the residual of the check rows is "
                                 "{:.3g} times that of the nominal machine.",
                                 *result.check_ratio)});
+  // The residual alone does not distinguish a disturbance from an effect that the model does not contain.
   if (!record.disturbance.empty())
     list.push_back({"disturbed", record.disturbed,
-                    may_lack_effect ? "Possibly the survey was disturbed: " + record.disturbance +
-                                          ". A missing effect can look like this disturbance."
-                                    : "The survey was disturbed: " + record.disturbance + "."});
+                    "Possibly the survey was disturbed: " + record.disturbance +
+                        ". A missing effect (such as a backlash) can look like this disturbance: vernier "
+                        "diagnose compares the causes."});
   if (const double share = repeated_poses(m); share >= 0.5)
     list.push_back({"check-not-independent", share,
                     fmt::format("{:.0f} % of the check rows repeat poses of fit rows: these check rows "

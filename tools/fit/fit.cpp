@@ -63,7 +63,27 @@ Origin origin_of(const FitResult& result, std::size_t i, double std, const Settl
   return end.bias[at] <= kMovedByConvention * std ? Origin::kData : Origin::kConvention;
 }
 
-void estimate(FitResult& result, const Settled& end) {
+/// Returns the statistics of the fit rows for the given machine with the set-up of the convention. nullopt:
+/// no set-up is free, or the set-up of the file is as near.
+std::optional<RoleStatistics> with_only_set_up(const FitResult& result, const model::Machine& machine,
+                                               const Eigen::VectorXd& centre, const model::Measurement& m) {
+  Eigen::VectorXd values = result.parameters.get(machine);
+  bool any = false;
+  for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+    if (!model::is_set_up(result.parameters[i].kind)) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    values[at] = centre[at];
+    any = true;
+  }
+  if (!any) return std::nullopt;
+  model::Machine placed = machine;
+  result.parameters.set(placed, values);
+  const RoleStatistics there = role_statistics(m, residuals(placed, m), false);
+  const bool nearer = there.rms_um.value_or(0) < result.before.rms_um.value_or(0);
+  return nearer ? std::optional(there) : std::nullopt;
+}
+
+void estimate(FitResult& result, const Settled& end, const Eigen::VectorXd& centre) {
   result.observability = observe(end.normal);
   result.observability.covariance = end.covariance / end.variance;
   result.covariance = end.covariance;
@@ -76,7 +96,7 @@ void estimate(FitResult& result, const Settled& end) {
     const auto at = static_cast<Eigen::Index>(i);
     const double std = std::sqrt(std::max(0.0, end.covariance(at, at)));
     result.estimates.push_back({result.parameters[i].name, result.parameters[i].unit, end.point[at], std,
-                                end.scale[at], origin_of(result, i, std, end)});
+                                end.scale[at], origin_of(result, i, std, end), centre[at]});
   }
 }
 
@@ -432,6 +452,11 @@ void keep_start_as_nominal(model::Machine& machine) {
 
 }  // namespace
 
+bool ParameterEstimate::moved() const {
+  constexpr double kOfScale = 0.005;  // half a per cent of the scale: not visible beside it with two digits
+  return std::abs(value - nominal) > kOfScale * scale;
+}
+
 FitResult fit(const model::Machine& machine, const model::Measurement& measurement,
               const FitOptions& options) {
   FitResult result;
@@ -450,6 +475,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   Convention convention = convention_of(machine, rows, result.parameters);
   result.misfit_mm = convention.misfit_mm;
   result.reach_mm = convention.reach_mm;
+  result.only_set_up = with_only_set_up(result, machine, convention.centre, measurement);
   FitProblem problem(machine, rows, result.parameters);
   problem.hold_unseen(convention.unseen);
   const StatedPriors stated = stated_priors(result, options, convention);
@@ -487,7 +513,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   result.residual = residuals(result.machine, measurement);
   result.after = role_statistics(measurement, result.residual, false);
   result.check = role_statistics(measurement, result.residual, true);
-  estimate(result, end);
+  estimate(result, end, convention.centre);
   result.things = estimates_of_things(result, measurement);
   judge(result, machine, measurement, end, readings);
   result.check_ratio = check_ratio(result, convention.centre, measurement);

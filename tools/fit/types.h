@@ -53,7 +53,7 @@ enum class Origin : std::uint8_t {
   kData,        // the readings determine the value; the convention moves it by less than 1 % of its standard
                 // uncertainty
   kConvention,  // the parameter is part of a combination that the readings do not determine
-  kPrior,       // the parameter is not measured; its value is nominal ± its scale
+  kPrior,       // the parameter is not measured or hardly measured; its uncertainty is that of its scale
 };
 
 struct ParameterEstimate {
@@ -62,6 +62,9 @@ struct ParameterEstimate {
   double std = 0;    // standard uncertainty from data and convention; always finite
   double scale = 0;  // plausible difference of the value from nominal
   Origin from = Origin::kData;
+  double nominal = 0;  // value of the parameter if no reading determined it
+  /// True if the readings changed the value, although its uncertainty is still that of its scale.
+  bool moved() const;
 };
 
 /// Agreement of the check rows with the stated uncertainty. The normalised error of a reading is its residual
@@ -174,6 +177,9 @@ struct FitResult {
   std::vector<ParameterEstimate> estimates;
   Observability observability;
   RoleStatistics before, after, check;
+  /// Fit rows of the given machine, with a fitted set-up; nullopt if no set-up is free. `before` has the
+  /// set-up of the machine file, which may be metres from the instrument.
+  std::optional<RoleStatistics> only_set_up;
   std::optional<double> noise_um;
   NoiseModel noise;                       // noise model (correlation of the errors of the readings) that the
                                           // covariance uses

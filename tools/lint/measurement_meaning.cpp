@@ -440,7 +440,7 @@ std::string temperature_doubt(double least_degC, double most_degC) {
   // 7 to 43 degC, read as Fahrenheit; all of a survey so warm is rare, and a spindle's housing may be.
   constexpr double kLeast_degF = 45, kMost_degF = 110;
   if (least_degC < -40 || most_degC > 120) return "K or another unit?";
-  if (least_degC >= kLeast_degF && most_degC <= kMost_degF) return "degF?";
+  if (least_degC >= kLeast_degF && most_degC <= kMost_degF) return "degF, or a heated part (bed, spindle)?";
   return {};
 }
 

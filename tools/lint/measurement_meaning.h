@@ -14,7 +14,8 @@ void look_at_meaning(const LintTable& table, const std::string& file, const mode
                      LintFindings& findings);
 
 /// Tests whether readings of a temperature input, from least_degC to most_degC, are plausible in a workshop.
-/// Returns the probable unit of the readings ("degF?"); empty if the readings are plausible.
+/// Returns the probable unit of the readings ("degF, or a heated part (bed, spindle)?"); empty if the
+/// readings are plausible.
 std::string temperature_doubt(double least_degC, double most_degC);
 
 }  // namespace vernier::lint

@@ -101,7 +101,9 @@ text::Assurance assurance_of(const fit::FitResult& result) {
     if (item.from == fit::Origin::kPrior) open += (open.empty() ? "" : ", ") + item.name;
   if (!open.empty())
     word.not_covered(
-        fmt::format("These parameters are not measured and stay at nominal +- scale: {}.", open));
+        fmt::format("These parameters are not measured or hardly measured; they are as uncertain as nominal "
+                    "+- scale: {}.",
+                    open));
   return word;
 }
 

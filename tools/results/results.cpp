@@ -114,6 +114,7 @@ ordered_json things_json(const std::vector<fit::ThingEstimate>& things) {
 ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m) {
   ordered_json json =
       shared(result.machine, m, result.before, result.after, result.check, result.parameters.size());
+  if (result.only_set_up) json["rms_only_set_up_um"] = text::or_null(result.only_set_up->rms_um);
   json["parameters"] = ordered_json::array();
   const std::vector<model::ExprPtr> chain = chain_expressions(result.machine);
   for (const fit::ParameterEstimate& item : result.estimates) {

@@ -2,13 +2,16 @@
 #include "tools/safety/safety_sheet.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "tools/fit/coverage/reach.h"
+#include "tools/fit/fit.h"
 #include "tools/kinematics/correction.h"
 #include "tools/kinematics/jacobian.h"
 #include "tools/maths/decompositions.h"
@@ -190,7 +193,39 @@ class Judge {
     for (const model::Tool& tool : machine_.tools)
       judge_tool(model::with_tool(machine_, tool.point), "tool " + tool.name);
     add(SafetyRule::kUncertainty, worst, of);
+    sheet_.not_measured = not_measured();
     sheet_.stale = reach.stale();
+  }
+
+  /// Parameters of the last fit that no reading determines and none changed; a column of a table if this
+  /// holds for all of it.
+  std::string not_measured() const {
+    const model::FitRecord& record = *machine_.fitted;
+    std::vector<std::string> names;  // in the order of the fit
+    std::set<std::string> measured;
+    for (std::size_t i = 0; i < std::min(record.parameters.size(), record.origins.size()); ++i) {
+      std::string name = record.parameters[i];
+      if (name.starts_with("BaseShift") || name.starts_with("ToolShift")) continue;
+      // table.X[50].rY is a value of the column table.X.rY.
+      if (const auto open = name.find('['), close = name.find(']');
+          name.starts_with("table.") && open != std::string::npos && close != std::string::npos)
+        name.erase(open, close - open + 1);
+      if (record.origins[i] != fit::origin_name(fit::Origin::kPrior) || was_changed(record, i))
+        measured.insert(name);
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    std::erase_if(names, [&](const std::string& name) { return measured.contains(name); });
+    return fmt::format("{}", fmt::join(names, ","));
+  }
+
+  /// True if the fit changed the value of a parameter visibly beside its standard uncertainty.
+  bool was_changed(const model::FitRecord& record, std::size_t i) const {
+    constexpr double kOfStd = 0.01;  // a smaller change is not visible beside two digits of the uncertainty
+    const auto at = static_cast<Eigen::Index>(i);
+    if (at >= record.values.size() || at >= record.factor.rows()) return true;
+    const auto known = machine_.find_static(record.parameters[i]);
+    const double nominal = known ? machine_.statics[*known].nominal.value_or(0) : 0;
+    return std::abs(record.values[at] - nominal) > kOfStd * record.factor.row(at).norm();
   }
 
   /// Size of the correction with this tool, and the share that the noise of a good fit may leave.
@@ -370,7 +405,14 @@ std::string SafetySheet::refusal() const {
   std::string text = fmt::format("not safe to run: {}", figures(worst));
   if (!worst.culprit.empty()) text += ": " + worst.culprit;
   text += fmt::format(" ({})", worst.reason);
-  if (const std::string remedy = text_of(worst.rule).remedy; !remedy.empty()) text += "; " + remedy;
+  if (worst.rule == SafetyRule::kUncertainty && !not_measured.empty())
+    text += fmt::format(
+        "; measure more poses, or fit the machine again without the parameters that no reading determines: "
+        "fit "
+        "--hold \"{}\"; a correction that is nearly zero fails this rule too, and can be accepted",
+        not_measured);
+  else if (const std::string remedy = text_of(worst.rule).remedy; !remedy.empty())
+    text += "; " + remedy;
   std::string accept;
   for (const SafetyFinding* finding : failed) {
     if (finding != &worst)

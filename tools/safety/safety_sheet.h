@@ -50,6 +50,9 @@ struct SafetySheet {
   /// Names of parameters that were added or changed by hand after the fit. The uncertainty of a parameter
   /// that was changed by hand is the difference between its present value and its fitted value.
   std::vector<std::string> stale;
+  /// Parameters and columns of tables that no reading determines, separated by commas: those that `fit
+  /// --hold` leaves out.
+  std::string not_measured;
   /// Adds the finding of one rule to the sheet. Throws std::logic_error if the value is not finite.
   void judge(SafetyRule rule, std::optional<double> value, std::string culprit,
              const std::vector<SafetyRule>& accepted);

@@ -317,6 +317,11 @@ TEST_F(Manners, ImproveAddsTheCertainEffectBeforeAnAmbiguousPeriod) {
   EXPECT_TRUE(said("verdict: ambiguous") && said("+ X carriage: backlash") && said("no effect is added"))
       << said_;
   EXPECT_FALSE(said("+ X carriage: cyclic error: rms")) << said_;
+  // The user has a machine to export, and the command that decides for one cause.
+  EXPECT_TRUE(
+      said("The file better/1_backlash.xml is the machine fitted without these causes, for vernier export."))
+      << said_;
+  EXPECT_TRUE(said("decide for one cause: vernier add 'cyclic-error:axis=X")) << said_;
 }
 
 TEST_F(Manners, CorrectWritesNothingBeyondMaxcorrection) {

@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
@@ -196,6 +198,81 @@ TEST_F(OutputFolder, LinuxCncHasTheComponentWhereScrewTablesCannotExpressTheMach
   EXPECT_FALSE(fs::exists(in("x.comp")));
 }
 
+/// "13 um before, 3.6 with the files" was read as the error of the machine, which nobody had measured.
+TEST_F(OutputFolder, ExportSaysThatItsFiguresAreThoseOfTheModel) {
+  write_file(in("mill.xml"),
+             R"xml(<machine name="m"><variables><static><k value="0.0001" nominal="0"/></static>
+  <machineaxes><X min="0" max="600" maxcorrection="0.2" maxslew="5"/>
+  <Y min="0" max="400" maxcorrection="0.2" maxslew="5"/>
+  <Z min="-300" max="0" maxcorrection="0.2" maxslew="5"/></machineaxes></variables>
+  <transforms><sixdof n="1" X="X+k*X"/><sixdof n="2" Y="Y"/><sixdof n="3" Z="Z"/></transforms></machine>)xml");
+  write_file(in("arm.xml"), R"xml(<machine name="arm"><variables><static>
+  <off value="0.01" nominal="0" unit="deg"/></static>
+  <machineaxes><A rotary="true" min="-90" max="90"/></machineaxes></variables>
+  <transforms><sixdof n="1" rZ="A+off"/><sixdof n="2" X="300"/></transforms></machine>)xml");
+  for (const char* command :
+       {"siemens mill.xml -o out_siemens", "klipper mill.xml -o out_klipper --steps 40,40,8",
+        "linuxcnc mill.xml -o out_linuxcnc --component", "linuxcnc mill.xml -o out_screws --axis X",
+        "urdf arm.xml -o out_urdf"}) {
+    ASSERT_EQ(run(std::string("vernier export ") + command + " --json result.json"), 0) << command << said();
+    const std::string words = "The machine was not measured with these files";
+    EXPECT_NE(said().find(words), std::string::npos) << command << said();
+    EXPECT_NE(read_file(in("result.json")).find(words), std::string::npos) << command;
+    EXPECT_EQ(said().find("um before"), std::string::npos) << command << said();
+  }
+  ASSERT_EQ(run("vernier export siemens mill.xml -o again"), 0) << said();
+  EXPECT_NE(said().find("the model predicts an error of the tool point of "), std::string::npos) << said();
+  EXPECT_NE(said().find("um rms of this prediction remain"), std::string::npos) << said();
+}
+
+/// Linear tests of three axes, as rows of `X[mm],Y[mm],Z[mm],dirX,run,x[mm],u[um],role`. `sorted`: the rows
+/// back are in the order of a table, not of their readings.
+std::string laser_rows(int axis) {
+  const std::string letters = "XYZ", small = "xyz";
+  std::string rows = std::string("X[mm],Y[mm],Z[mm],dir") + letters[static_cast<std::size_t>(axis)] +
+                     ",run," + small[static_cast<std::size_t>(axis)] + "[mm],u[um],role\n";
+  int count = 0;
+  for (int run = 1; run <= 3; ++run)
+    for (const int sense : {1, -1})
+      for (int k = 0; k <= 10; ++k) {
+        const int at = 30 * (sense < 0 ? 10 - k : k);
+        std::array<int, 3> position = {150, 150, 150};
+        position[static_cast<std::size_t>(axis)] = at;
+        const double noise = 0.0004 * ((count * 7 + axis) % 5 - 2);
+        const double error = 0.008 * std::sin(at / 60.0 + axis) + 0.004 * sense / (axis + 1) + noise;
+        rows += std::to_string(position[0]) + "," + std::to_string(position[1]) + "," +
+                std::to_string(position[2]) + "," + std::to_string(sense) + "," + std::to_string(run) + "," +
+                std::to_string(at + error) + ",0.6," + (++count % 5 == 0 ? "check" : "fit") + "\n";
+      }
+  return rows;
+}
+
+/// A user with a laser alone had no export: the columns that a laser along an axis cannot see were as
+/// uncertain as before the fit, and the remedy of the refusal held everything.
+TEST_F(OutputFolder, LaserAloneHasAMachineAndTheCommandsToItsExport) {
+  for (int axis = 0; axis < 3; ++axis) write_file(in(std::string(1, "xyz"[axis]) + ".csv"), laser_rows(axis));
+  ASSERT_EQ(
+      run("vernier new column --axis X:0:300 --axis Y:0:300 --axis Z:0:300 --stations X=30 --stations Y=30 "
+          "--stations Z=30 -o mill.xml"),
+      0)
+      << said();
+  ASSERT_EQ(run("vernier improve mill.xml x.csv y.csv z.csv -o out --yes"), 0) << said();
+  const std::string improved = said();
+  EXPECT_NE(improved.find("verdict: missing-effect"), std::string::npos) << improved;
+  ASSERT_NE(
+      improved.find("fit the machine again without the parameters that no reading determines: fit --hold \""),
+      std::string::npos)
+      << improved;
+  const auto begin = improved.find("fit --hold \"") + 12;
+  const std::string held = improved.substr(begin, improved.find('"', begin) - begin);
+  EXPECT_EQ(held.find("table.X.X"), std::string::npos) << held;
+  EXPECT_NE(held.find("table.X.Y,"), std::string::npos) << held;
+  ASSERT_EQ(run("vernier fit \"$(ls out/*_backlash.xml | tail -1)\" x.csv y.csv z.csv --hold \"" + held +
+                "\" -o held.xml && vernier export siemens held.xml -o files"),
+            0)
+      << said();
+}
+
 using Instruments = OutputFolder;
 
 /// x y z of a tracker whose frame is turned by 35 degrees about z and moved, 0.1 um; k = 0.0001 in X.
@@ -219,6 +296,15 @@ TEST_F(Instruments, LaserAndTurnedTrackerAreFittedTogether) {
   ASSERT_EQ(run("vernier fit m.xml laser.csv tracker.csv -o f.xml"), 0) << said();
   EXPECT_NE(said().find("tracker.csv has its own set-up BaseShift[tracker]"), std::string::npos) << said();
   EXPECT_NE(read_file(in("f.xml")).find("<BaseShift setup=\"tracker\""), std::string::npos);
+  // Before the fit the tracker is somewhere: its distance is no error of the machine.
+  ASSERT_EQ(run("vernier fit m.xml tracker.csv -o t.xml --json t.json"), 0) << said();
+  EXPECT_NE(said().find(" um   with only the set-up fitted\n"), std::string::npos) << said();
+  const std::string json = read_file(in("t.json"));
+  const std::string key = "\"rms_only_set_up_um\": ";
+  ASSERT_NE(json.find(key), std::string::npos) << json;
+  // 0.1 um/mm over 600 mm is 60 um: a rigid motion takes its mean, and an rms of 18 um remains.
+  EXPECT_LT(std::stod(json.substr(json.find(key) + key.size())), 30);
+  EXPECT_NE(json.find("\"rms_before_um\": "), std::string::npos) << json;
   // The fitted machine knows the set-up of the file by its name.
   ASSERT_EQ(run("vernier compare f.xml tracker.csv --limit 1um"), 0) << said();
   ASSERT_EQ(run("vernier compare f.xml laser.csv --limit 1um"), 0) << said();

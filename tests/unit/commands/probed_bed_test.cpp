@@ -183,5 +183,22 @@ TEST_F(ProbedBed, ExportFollowsTheTouchesWhereNothingDistinguishesBedFromAxes) {
   EXPECT_LT(largest_of_mesh_um(text::read_file(folder + "/out/vernier.cfg")), 15);
 }
 
+/// The standard uncertainty of an angle that no reading determines is that of its scale: as a length over the
+/// travel it was printed as an error of 2.5 mm.
+TEST_F(ProbedBed, ASquarenessThatNoReadingDeterminesHasNoSizeInTheExport) {
+  ASSERT_EQ(
+      run("vernier new gantry --axis X:0:235 --axis Y:0:235 --axis Z:0:250 --artefact bed:plane -o g.xml "
+          "&& vernier fit g.xml bed.csv -o g.xml"),
+      0)
+      << said;
+  ASSERT_EQ(run("vernier export klipper g.xml -o out --accept measured-range --accept disturbed --accept "
+                "uncertainty --accept check-rows --accept residual"),
+            0)
+      << said;
+  EXPECT_THAT(said, HasSubstr("left out: squareness XY: the readings of the last fit do not determine it"));
+  EXPECT_THAT(said, HasSubstr("the files do not contain it: size unknown"));
+  EXPECT_THAT(said, Not(HasSubstr("+- 0.0")));
+}
+
 }  // namespace
 }  // namespace vernier::probed_bed_test

@@ -562,5 +562,18 @@ TEST(Convention, ErrorThatSetUpsHideIsAsLargeAsTheReadingsSay) {
   EXPECT_LT(result.after.rms_um.value(), 5.5);
 }
 
+/// "not measured; stays at nominal" was printed of values that the readings had changed.
+TEST(Convention, AValueThatTheReadingsChangedIsNotAtNominal) {
+  ParameterEstimate one;
+  one.from = Origin::kPrior;
+  one.scale = 0.005;
+  one.value = one.nominal = 0.1;
+  EXPECT_FALSE(one.moved());
+  one.value = 0.1 + 1e-9;  // rounding of the solver
+  EXPECT_FALSE(one.moved());
+  one.value = 0.098;
+  EXPECT_TRUE(one.moved());
+}
+
 }  // namespace
 }  // namespace vernier::convention_test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Workshop tables with a value or a column that could mean two things: the other cells decide, or the message
 // states what to do.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -422,6 +423,109 @@ TEST(SheetUnit, DegreesUnderRadAndRadiansUnderDegAreRefused) {
   EXPECT_THAT(read("C [deg];dC [arcsec]\n0;1\n0,5;2\n1;3\n1,5;2\n2;1\n6;1\n"), StartsWith("C[deg],"));
   EXPECT_THAT(read("C [rad];dC [arcsec]\n0;1\n1,5708;2\n3,1416;3\n4,7124;2\n6,2832;1\n"),
               StartsWith("C[rad],"));
+}
+
+/// Zeros at the end of all cells, a zero of the table that is no zero of the axis, and the joints of a robot.
+TEST(SheetUnit, RadiansUnderDegFromAnotherZeroAreRefusedAndThoseOfARobotNoted) {
+  EXPECT_THAT(read("C [deg];dC [arcsec]\n0,0000;1\n0,5240;2\n1,0470;3\n1,5710;2\n2,0940;1\n2,6180;1\n"),
+              HasSubstr("and all are fractions of a half turn in rad: radians under a heading in deg"));
+  const std::string moved =
+      "Soll C [deg];Ist C [deg]\n0,0500;0,0500\n0,2245;0,2245\n0,3991;0,3991\n0,5736;0,5735\n"
+      "0,7481;0,7481\n0,9227;0,9227\n1,0972;1,0972\n";
+  EXPECT_THAT(read(moved),
+              HasSubstr("refused: s.csv:1: \"Soll C [deg]\": the positions go to 1.0972, and all "
+                        "differ from 0.05 by fractions of a half turn in rad: radians under a "
+                        "heading in deg; correct the unit of the heading to [rad]"));
+  SheetWords sure;
+  sure.columns = {"C[deg]=Soll C [deg]", "rz[deg]=Ist C [deg]"};
+  EXPECT_THAT(read(moved, sure), StartsWith("C[deg],rz[deg]\n"));
+  EXPECT_THAT(read("C [deg];dC [arcsec]\n-2,900;1\n-2,376;2\n-1,853;3\n-1,329;2\n-0,806;1\n-0,282;1\n"
+                   "0,242;1\n0,765;1\n"),
+              HasSubstr("differ from -2.9 by fractions"));
+  // Degrees of a small table, from any zero, are degrees.
+  for (const char* const right :
+       {"C [deg];dC [arcsec]\n0,00;1\n0,25;2\n0,50;3\n0,75;2\n1,00;1\n1,25;1\n1,50;1\n",
+        "C [deg];dC [arcsec]\n-3,000;1\n-2,500;2\n-2,000;3\n-1,500;2\n-1,000;1\n-0,500;1\n0,000;1\n",
+        "C [deg];dC [arcsec]\n0,1234;1\n0,6234;2\n1,1234;3\n1,6234;2\n2,1234;1\n2,6234;1\n3,1234;1\n"})
+    EXPECT_THAT(read(right), AllOf(StartsWith("C[deg],rz[deg]\n"), Not(HasSubstr("rad")))) << right;
+  std::string joints = "J1 [deg];J2 [deg];J3 [deg];x [mm];y [mm];z [mm]\n", degrees = joints;
+  for (int i = 0; i < 8; ++i) {
+    joints += fmt::format("{:.4f};{:.4f};{:.4f};{};{};{}\n", 0.3 * i - 1.1, 1.7 - 0.4 * i, 0.35 * i - 1.4,
+                          100 * i, 50 * i, 400 - 40 * i);
+    degrees += fmt::format("{};{};{};{};{};{}\n", 20 * i - 60, 90 - 25 * i, 18 * i - 70, 100 * i, 50 * i,
+                           400 - 40 * i);
+  }
+  EXPECT_THAT(read(joints),
+              HasSubstr("note: the positions of 3 rotary axes are between -3.14 and 3.14 deg: if "
+                        "they are in radians, correct the units of their headings to [rad]"));
+  EXPECT_THAT(read(degrees), Not(HasSubstr("radians")));
+}
+
+/// Positions of 0 to 500 under [um]: a machine of half a millimetre was read without a word.
+TEST(SheetUnit, PositionsInMillimetresUnderMicrometresAreRefused) {
+  const std::string rows = "0;0,5\n100;7,2\n200;8,5\n300;8,7\n400;9,0\n500;12,7\n";
+  EXPECT_THAT(
+      read("X [um];Abweichung X [um]\n" + rows),
+      StartsWith("refused: s.csv:1: \"X [um]\": the positions go from 0 to 500 um, so X would move by "
+                 "0.5 mm only, with deviations of 8.7 um; if the positions are in mm, correct the unit "
+                 "of the heading to [mm]; if [um] is right, give --column \"X[um]=X [um]\""));
+  SheetWords sure;
+  sure.columns = {"X[um]=X [um]"};
+  EXPECT_THAT(read("X [um];Abweichung X [um]\n" + rows, sure), StartsWith("X[um],x[mm]\n"));
+  EXPECT_THAT(read("Soll X [um];Ist X [um]\n0;0,5\n100;107,2\n200;208,5\n300;308,7\n400;409,0\n500;512,7\n"),
+              StartsWith("refused: s.csv:1: \"Soll X [um]\": the positions go from 0 to 500 um"));
+  EXPECT_THAT(read("X [um];dX [um]\n0;0\n20;1,6\n40;3,2\n60;4,8\n80;6,4\n100;8\n"),
+              StartsWith("X[um],x[mm]\n"));
+  // A piezo stage is read, with a note; a long motion in um without one.
+  EXPECT_THAT(
+      read("X [um];Abweichung X [nm]\n" + rows),
+      AllOf(StartsWith("X[um],x[mm]\n"), HasSubstr("note: \"X [um]\": the positions go from 0 to 500 um")));
+  EXPECT_THAT(read("X [um];Abweichung X [um]\n0;0,5\n100000;7,2\n200000;8,5\n300000;8,7\n400000;9,0\n"),
+              AllOf(StartsWith("X[um],x[mm]\n"), Not(HasSubstr("would move"))));
+}
+
+/// A column that slipped by one row against its targets.
+TEST(SheetShift, MeasuredPositionsOfTheNextRowAreRefused) {
+  const std::string h = "Soll X [mm];Ist X [mm]\n";
+  const std::string next =
+      h +
+      "0;50,004\n50;100,007\n100;150,008\n150;150,013\n150;100,012\n100;50,010\n50;0,006\n"
+      "0;0,001\n";
+  EXPECT_THAT(
+      read(next),
+      StartsWith("refused: s.csv:1: \"Ist X [mm]\": the measured positions agree with the targets of the "
+                 "row below them"));
+  EXPECT_THAT(read(next),
+              HasSubstr("the column is probably shifted by one row against the targets; move the "
+                        "column by one row; if the rows are right, give --column \"x[mm]=Ist X [mm]\""));
+  SheetWords sure;
+  sure.columns = {"x[mm]=Ist X [mm]"};
+  EXPECT_THAT(read(next, sure),
+              AllOf(StartsWith("X[mm],x[mm]\n"), HasSubstr("note: \"Ist X [mm]\": the measured")));
+  // One step in all rows may be the zero of the instrument; another distance is that zero.
+  const auto moved = [&](double by) {
+    std::string rows = h;
+    for (int x = 0; x <= 300; x += 50) rows += fmt::format("{};{:.3f}\n", x, x + by + 0.00002 * x);
+    return read(rows);
+  };
+  EXPECT_THAT(moved(50), HasSubstr("or the zero of the instrument is one step away"));
+  EXPECT_THAT(moved(1250.3), Not(HasSubstr("shifted")));
+  EXPECT_THAT(moved(0), Not(HasSubstr("shifted")));
+}
+
+TEST(SheetShift, AnEmptyFirstReadingIsNotedAndOneBelowTheTableIsRefusedWithTheCause) {
+  const std::string h = "X [mm];Abweichung X [um]\n0;\n50;0,5\n100;4,4\n150;7,2\n200;8\n";
+  EXPECT_THAT(read(h),
+              HasSubstr("note: \"Abweichung X [um]\" is empty in line 2 only, the first row: if the column "
+                        "is shifted by one row against the positions, move it"));
+  EXPECT_THAT(read(h + ";8,5\n"),
+              HasSubstr("if the deviations are shifted by one row against the positions, move their column"));
+  // One of several runs side by side.
+  EXPECT_THAT(read("X [mm];hin [um];rueck [um]\n0;1;\n50;2;6,5\n100;3;7\n150;4;8\n200;5;9\n"),
+              HasSubstr("(column 3) is empty in line 2 only, the first row: if the column is shifted"));
+  // A lost reading in the middle is only lost.
+  EXPECT_THAT(read("X [mm];Abweichung X [um]\n0;1\n50;\n100;4,4\n150;7,2\n200;8\n"),
+              Not(HasSubstr("shifted")));
 }
 
 TEST(SheetUnit, OneDirectionInAnotherUnitIsRefused) {

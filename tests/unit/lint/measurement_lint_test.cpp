@@ -135,7 +135,7 @@ const Case kCases[] = {
     {"UncertaintyInMicrometres", "X[mm],Y[mm],Z[mm],x[mm],u[mm]\n1,2,-3,4,5\n2,3,-4,5,5\n",
      "an uncertainty of 5 mm -- µm? Write u[um]"},
     {"Fahrenheit", "X[mm],Y[mm],Z[mm],T_column[degC],x[mm]\n1,2,-3,68,4\n2,3,-4,74.5,5\n",
-     "\"T_column\": from 68 to 74.5 degC -- degF?"},
+     "\"T_column\": from 68 to 74.5 degC -- degF, or a heated part (bed, spindle)?"},
     {"CheckRowsOnly", kHead + kRow3, "all rows are check rows"},
     {"EmptyAxisCell", kHead + "0,,-300,1,0,1,20,0,0,-300,a,fit\n" + kRow2,
      "\"Y\": an axis position may not be empty"},

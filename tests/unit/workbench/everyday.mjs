@@ -79,7 +79,7 @@ async function tablesOfAControl(page) {
       `a field for ${name}`,
     );
   await page.click('#do-export');
-  await words(page, '#export-result', 'with the files');
+  await words(page, '#export-result', 'The machine was not measured with these files');
   assert.equal(await command(page), 'vernier export siemens router.xml -o siemens-router');
   quiet('export', 'siemens', join(folder, 'router.xml'), '-o', 'by_hand');
   const names = readdirSync(join(top, 'by_hand'));
@@ -126,7 +126,7 @@ async function accepted(page) {
   await words(page, '#export-error', 'in the field "accept"');
   for (const rule of ['measured-range', 'disturbed', 'uncertainty']) await mark('export', rule);
   await page.click('#do-export');
-  await words(page, '#export-result', 'with the files');
+  await words(page, '#export-result', 'The machine was not measured with these files');
   assert.ok(existsSync(join(folder, 'heidenhain-long')));
 }
 

@@ -257,6 +257,16 @@ async function shown(page) {
   );
   const kept = (path) => path.filter(([id, done]) => done && id === 'fall').length;
   assert.equal(kept(before), 1, 'the fit is a step of the way');
+  // What is behind the user is not drawn as still to do, and the step to do next is after it.
+  const way = await page.evaluate(
+    "[...document.querySelectorAll('#guide li')].map((one) => [one.classList.contains('done'), one.classList.contains('passed'), one.getAttribute('aria-current') === 'step'])",
+  );
+  const last = way.findLastIndex(([done]) => done);
+  assert.ok(last >= 4, 'the fit is the last step that is done');
+  assert.ok(
+    way.slice(0, last).every(([done, passed, current]) => (done || passed) && !current),
+    JSON.stringify(way),
+  );
   assert.equal(kept(await steps(page)), 1, 'and still is after a reload');
   // The path can be left and come back to.
   await page.click('#guide-away');
@@ -295,6 +305,7 @@ async function everywhere(page) {
   for (const [width, height, dark] of [
     [800, 600, false],
     [800, 600, true],
+    [1100, 720, false],
     [1280, 720, true],
   ]) {
     await emulate(page, { width, height, dark });
@@ -311,6 +322,22 @@ async function everywhere(page) {
       }
       if (pictures) await picture(page, `${name}_${width}${dark ? '_dark' : ''}`);
     }
+  }
+  // A usual name of a file is not cut: its width beside that of the list, which has an arrow.
+  for (const width of [1100, 1200, 1280]) {
+    await emulate(page, { width });
+    const room = await page.evaluate(`(() => {
+      const list = document.getElementById('measurement'), was = list.value, one = new Option('abnahme_read-2.csv');
+      list.add(one);
+      list.value = one.value;
+      const pen = document.createElement('canvas').getContext('2d');
+      pen.font = getComputedStyle(list).font;
+      const room = list.getBoundingClientRect().width - pen.measureText(one.text).width;
+      one.remove();
+      list.value = was;
+      return room;
+    })()`);
+    assert.ok(room >= 24, `the name of a file at ${width} px has ${room} px beside it`);
   }
   await emulate(page, {});
   await optionsOfTheProgram(page);

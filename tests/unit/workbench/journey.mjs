@@ -229,6 +229,7 @@ async function survey(page) {
   await page.evaluate("document.querySelector('#candidates tbody tr').focus()");
   assert.equal(await attribute(page, '#evidence', 'candidate'), wanted.candidates[0].add);
   assert.ok((await text(page, '#evidence')).includes(wanted.candidates[0].signature));
+  assert.ok((await text(page, '#which-residual')).includes('before the fit'), 'the plots and the figures say which residual they show');
   await picture(page, 'diagnose', '#verdict');
   await new Promise((wait) => setTimeout(wait, 1500));
   await picture(page, 'candidates', '#candidates');

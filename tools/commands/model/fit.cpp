@@ -118,8 +118,9 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
   for (const fit::ParameterEstimate& item : result.estimates) {
     const std::string note = results::reversal_note(chain, item.name, item.value, item.unit);
     fmt::print(out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}{}\n", item.name, item.value, item.std, item.unit,
-               item.from == fit::Origin::kPrior ? "not measured; stays at nominal +- scale"
-                                                : fit::origin_name(item.from),
+               item.from != fit::Origin::kPrior ? fit::origin_name(item.from)
+               : item.moved()                   ? "hardly measured; as uncertain as nominal +- scale"
+                                                : "not measured; stays at nominal +- scale",
                note.empty() ? "" : "; " + note);
   }
   print_decisions(out, result);
@@ -131,17 +132,23 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
   print_weakest(out, result);
   const fit::RoleStatistics &before = result.before, &after = result.after, &check = result.check;
   using results::error_or_dash;
-  fmt::print(out, "rms before      {}\n", error_or_dash(before.rms_um, before.rms_urad));
+  if (result.only_set_up)
+    fmt::print(out, "rms before      {}   with only the set-up fitted\n",
+               error_or_dash(result.only_set_up->rms_um, result.only_set_up->rms_urad));
+  else
+    fmt::print(out, "rms before      {}\n", error_or_dash(before.rms_um, before.rms_urad));
   fmt::print(out, "rms fit rows    {}   max {}\n", error_or_dash(after.rms_um, after.rms_urad),
              error_or_dash(after.max_um, after.max_urad));
   fmt::print(out, "rms check rows  {}   max {}\n", error_or_dash(check.rms_um, check.rms_urad),
              error_or_dash(check.max_um, check.max_urad));
   if (after.rms_um && after.rms_urad)
     fmt::print(out, "rms rotations   {} before {}\n", results::number_or_dash(after.rms_urad, "urad"),
-               results::number_or_dash(before.rms_urad, "urad"));
+               results::number_or_dash(result.only_set_up.value_or(before).rms_urad, "urad"));
   fmt::print(out, "noise           {}\n", error_or_dash(result.noise_um, fit::noise_urad(m)));
   if (!result.noise.independent())
-    fmt::print(out, "correlated errors, in every uncertainty below: {}\n",
+    fmt::print(out,
+               "correlated part of the residual, taken as correlated errors of the readings in every "
+               "uncertainty: {}\n",
                fit::in_words(result.noise, fit::noise_unit(m)));
   fmt::print(out, "{} observations, {} parameters, rank {}, {} rows excluded, {} iterations{}\n",
              result.before.count, result.parameters.size(), result.observability.rank, m.excluded,

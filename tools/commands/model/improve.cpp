@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <set>
@@ -167,10 +168,14 @@ class Improver {
     fmt::print(out_, "verdict: {}. {}\n", diagnose::verdict_name(d.verdict), d.explanation);
     for (const std::string& next : d.next_measurement) fmt::print(out_, "measure next: {}\n", next);
     const std::size_t certain = certain_steps(d);
-    if (d.verdict == diagnose::Verdict::kAmbiguous && certain == 0)
+    open_.clear();
+    if (d.verdict == diagnose::Verdict::kAmbiguous && certain == 0) {
+      open_ = left_open(d);
       fmt::print(out_,
                  "no effect is added: measure the proposed poses and give all files to improve; or add one "
-                 "cause with vernier add\n");
+                 "cause with vernier add\n{}\n",
+                 open_);
+    }
     if (certain == 0) return false;
     for (std::size_t i = 1; i <= certain; ++i) {
       const diagnose::LadderStep& step = d.ladder[i];
@@ -184,6 +189,33 @@ class Improver {
     machine_ = model::parse_machine(text_, arguments_.survey.machine);
     rows_ = model::rebind(rows_, before, machine_);
     return true;
+  }
+
+  /// Returns what the user has although no cause is certain: the machine without the open causes, the size of
+  /// what remains, and the command that adds the most likely cause.
+  std::string left_open(const diagnose::Diagnosis& d) const {
+    const std::string& file = model_steps_.back().file;
+    const std::optional<double> all = model_steps_.back().rms_um, noise = d.end.noise_um;
+    const double left_um = all && noise ? std::sqrt(std::max(0.0, *all * *all - *noise * *noise)) : 0;
+    std::string text =
+        fmt::format("The file {} is the machine fitted without these causes, for vernier export.", file);
+    if (left_um > 0) text += fmt::format(" An error of {:.2g} um rms remains uncorrected.", left_um);
+    const auto named =
+        std::find_if(d.causes.begin(), d.causes.end(), [](const auto& cause) { return !cause.add.empty(); });
+    if (named == d.causes.end()) return text;
+    text += fmt::format(
+        " To correct this error too, decide for one cause: vernier add '{}' {} -o NEW.xml, then "
+        "vernier fit.",
+        named->add, file);
+    const bool by_rows = std::any_of(d.causes.begin(), d.causes.end(), [](const auto& cause) {
+      return cause.add.find("form=count") != std::string::npos;
+    });
+    if (by_rows)
+      text +=
+          " A drift from row to row is a cause only if the rows are in the order of their readings: a table "
+          "that "
+          "is sorted by its positions has another order.";
+    return text;
   }
 
   /// Returns the number of steps that no other cause explains. If the verdict is ambiguous because of other
@@ -271,7 +303,8 @@ class Improver {
   }
 
   std::string explanation() const {
-    const std::string last = last_["explanation"].get<std::string>();
+    std::string last = last_["explanation"].get<std::string>();
+    if (!open_.empty()) last += " " + open_;
     return refused_.is_null() ? last : last + " " + refused_["why_not"].get<std::string>() + ".";
   }
 
@@ -417,6 +450,8 @@ class Improver {
   std::vector<effects::Effect> effects_;
   std::vector<ModelStep> model_steps_;
   Json first_diagnosis_, last_;
+  std::string
+      open_;      // what the user has although no cause is certain; empty: a cause is, or nothing is missing
   Json refused_;  // the step that check rows with the tool point do not confirm; null: there is none
 };
 

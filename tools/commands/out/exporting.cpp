@@ -18,6 +18,12 @@ namespace vernier::commands::exchange_cli {
 
 namespace {
 
+/// The errors of an export are errors of the model, not of the machine.
+constexpr const char* kNotMeasured =
+    "The machine was not measured with these files: an error that the model does not contain remains. "
+    "Measure "
+    "the machine again while the files are active.";
+
 /// Assurance of an export: the machine may run with the correction, all of its errors are in the files, and
 /// the error between the lines is within the tolerance.
 text::Assurance assurance_of(const model::Machine& machine, const ExchangeArguments& arguments,
@@ -35,6 +41,7 @@ text::Assurance assurance_of(const model::Machine& machine, const ExchangeArgume
     assurance.at_most(
         "between-lines-" + one.axis, one.worst_um, arguments.tolerance_um,
         fmt::format("Largest error between the lines of {}, um, at {} positions.", one.axis, one.probed));
+  assurance.not_covered(kNotMeasured);
   for (const std::string& rule : arguments.accept)
     assurance.not_covered(fmt::format("The user accepted a rule of the safety sheet (--accept): {}.", rule));
   return assurance;
@@ -65,7 +72,9 @@ void finish(const model::Machine& machine, const ExchangeArguments& arguments, c
     fmt::print(out, "{}: {} lines, error between them at most {:.3g} um ({} positions evaluated)\n", one.axis,
                one.lines, one.worst_um, one.probed);
   for (const exchange::LeftOut& one : left_out)
-    fmt::print(out, "left out: {}: up to {:.4g} um\n", one.what, one.um);
+    fmt::print(out, "left out: {}: {}\n", one.what,
+               one.measured ? fmt::format("up to {:.4g} um", one.um) : "size unknown");
+  if (exported) fmt::print(out, "{}\n", kNotMeasured);
   for (const Json& file : files) fmt::print(out, "{}\n", file.get<std::string>());
 }
 
@@ -97,9 +106,10 @@ std::vector<exchange::LeftOut> remaining(const std::array<double, 3>& after_um) 
   std::vector<exchange::LeftOut> left;
   for (std::size_t i = 0; i < 3; ++i)
     if (after_um[i] > exchange::kNothing_um)
-      left.push_back({fmt::format("error along {} that remains with the files, between the points as well",
-                                  exchange::kLetters[i]),
-                      after_um[i]});
+      left.push_back(
+          {fmt::format("error along {} by the model that remains with the files, between the points as well",
+                       exchange::kLetters[i]),
+           after_um[i]});
   return left;
 }
 
@@ -113,11 +123,10 @@ void refuse_without_errors(const ExchangeArguments& arguments, double before_um)
 }
 
 void print_rms(const ExchangeArguments& arguments, std::size_t positions, double before_um, double after_um) {
-  fmt::print(
-      human_stream(arguments.json),
-      "error of the tool point by the model at {} positions, rms: {:.4g} um before, {:.4g} um with the "
-      "files; errors that the model lacks remain in addition\n",
-      positions, before_um, after_um);
+  fmt::print(human_stream(arguments.json),
+             "the model predicts an error of the tool point of {:.4g} um rms in the working volume ({} "
+             "positions); with the files {:.4g} um rms of this prediction remain\n",
+             before_um, positions, after_um);
 }
 
 CLI::App* add_export(CLI::App* parent, const char* kind, const char* what, const char* output_type,

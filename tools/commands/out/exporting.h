@@ -61,7 +61,8 @@ std::vector<exchange::LeftOut> remaining(const std::array<double, 3>& after_um);
 /// controller.
 void refuse_without_errors(const ExchangeArguments& arguments, double before_um);
 
-/// Prints the rms error of the tool point over a number of positions, without and with the exported files.
+/// Prints the rms error of the tool point that the model predicts over a number of positions, and the part of
+/// this prediction that remains with the exported files.
 void print_rms(const ExchangeArguments& arguments, std::size_t positions, double before_um, double after_um);
 
 /// Adds the subcommand of an export format, with the options of every export. `output_type`: kWrites or

@@ -11,6 +11,7 @@
 #include "tools/exchange/printer/firmware_files.h"
 #include "tools/fit/findings.h"
 #include "tools/kinematics/at.h"
+#include "tools/maths/factors.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"
@@ -96,12 +97,15 @@ void add_left_out_of_bed(std::vector<exchange::LeftOut>& left, const exchange::B
 void add_unmeasured(std::vector<exchange::LeftOut>& left, const exchange::PrinterCorrection& correction) {
   for (const exchange::UnmeasuredPart& part : correction.unmeasured) {
     if (part.um <= exchange::kNothing_um) continue;
+    constexpr double kUmPerM = 1e6;
     const bool skew = part.name.size() == 2;
-    left.push_back(
-        {fmt::format("{} {} that the last fit did not measure ({:.3g} +- {:.3g}): the files do not "
-                     "contain it",
-                     skew ? "squareness" : "scale", part.name, part.value, part.std),
-         part.um});
+    const std::string value = skew ? fmt::format("{:.3g} deg", part.value / maths::kRadPerDeg)
+                                   : fmt::format("{:.3g} um/m", part.value * kUmPerM);
+    left.push_back({fmt::format("{} {}: the readings of the last fit do not determine it (value of the model "
+                                "{}), and the files do not contain it",
+                                skew ? "squareness" : "scale", part.name, value),
+                    part.um});
+    left.back().measured = false;
   }
 }
 
@@ -180,8 +184,9 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
     add_left_out_of_bed(left, *bed, machine);
     extra["errors"]["beyond_bed_um"] = errors.beyond_bed_um;
     if (errors.beyond_bed_um > errors.after_um[2] + exchange::kNothing_um)
-      left.push_back({"error along Z that remains with the files outside the touched region of the bed",
-                      errors.beyond_bed_um});
+      left.push_back(
+          {"error along Z by the model that remains with the files outside the touched region of the bed",
+           errors.beyond_bed_um});
   }
   finish(machine, common, name, left, files, {}, true, extra);
 }

@@ -28,6 +28,8 @@ constexpr double kTurn_deg = 360;
 constexpr double kMostShare = 0.4;
 /// No turn of a usual axis is longer: two turns in each direction.
 constexpr double kMost_rad = 4 * std::numbers::pi;
+/// Joints of a robot that move less than this in rad are not judged.
+constexpr double kPlainly_rad = 1;
 /// Whole numbers of radians are not a usual choice of targets. With this many of them, the unit is wrong.
 constexpr std::size_t kFewestAngles = 3;
 
@@ -117,7 +119,7 @@ std::optional<SizeDoubt> far_row(const sheet::Sheet& sheet, const sheet::SheetTa
   return std::nullopt;
 }
 
-/// The numbers of a column, and for each one half of the step of its last digit.
+/// A number of a column, and half of the step of the last digit of the column.
 struct Printed {
   double value = 0, half_digit = 0;
 };
@@ -126,47 +128,107 @@ std::vector<Printed> printed_values(const sheet::Sheet& sheet, const sheet::Shee
                                     std::size_t k) {
   std::vector<Printed> list;
   std::set<double> known;
+  double finest = 0;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const auto value = sheet::number_at(sheet, row, k);
-    if (!value || *value == 0 || !known.insert(std::abs(*value)).second) continue;
+    if (!value || !known.insert(*value).second) continue;
     const std::string& cell = sheet.rows[row][k];
     const auto sign = cell.find(sheet.decimal_comma ? ',' : '.');
-    const double digits = sign == std::string::npos ? 0 : static_cast<double>(cell.size() - sign - 1);
-    list.push_back({std::abs(*value), 0.5 * std::pow(10, -digits)});
+    // Zeros at the end of all cells show no digit: a table may print 0.524 as 0.5240.
+    const auto last = sign == std::string::npos ? sign : cell.find_last_not_of('0');
+    finest = std::max(finest, sign == std::string::npos ? 0 : static_cast<double>(last - sign));
+    list.push_back({*value, sign == std::string::npos ? 0 : static_cast<double>(cell.size() - sign - 1)});
   }
+  for (Printed& one : list)  // the cell "0" shows no digits of its own
+    one.half_digit = 0.5 * std::pow(10, -(one.value == 0 ? finest : std::min(one.half_digit, finest)));
   return list;
+}
+
+double largest_of(const std::vector<Printed>& values) {
+  double largest = 0;
+  for (const Printed& one : values) largest = std::max(largest, std::abs(one.value));
+  return largest;
 }
 
 /// Whole degrees under a heading in rad.
 bool are_degrees(const std::vector<Printed>& values) {
-  double largest = 0;
-  bool whole = true;
-  for (const Printed& one : values) {
-    largest = std::max(largest, one.value);
-    whole &= one.value == std::floor(one.value);
-  }
-  return largest > kMost_rad || (whole && largest > std::numbers::pi && values.size() >= kFewestAngles);
+  const double largest = largest_of(values);
+  const bool whole = std::all_of(values.begin(), values.end(),
+                                 [](const Printed& one) { return one.value == std::floor(one.value); });
+  const auto other =
+      std::count_if(values.begin(), values.end(), [](const Printed& one) { return one.value != 0; });
+  return largest > kMost_rad ||
+         (whole && largest > std::numbers::pi && static_cast<std::size_t>(other) >= kFewestAngles);
 }
 
-/// Fractions of a half turn in rad, to the last digit: 0.524 1.047 1.571 … 6.283.
-bool are_radians(const std::vector<Printed>& values) {
-  constexpr double kLeastResolution = 1000;  // largest value in steps of the last digit
-  if (values.size() < kFewestAngles) return false;
-  double largest = 0, digit = 0;
-  for (const Printed& one : values) {
-    largest = std::max(largest, one.value);
-    digit = std::max(digit, 2 * one.half_digit);
-  }
-  if (largest > kMost_rad || largest < kLeastResolution * digit / 2) return false;
+/// True if all numbers but those near `zero` are fractions of a half turn away from it, to the last digit.
+/// `roundings`: number of printed values in a difference.
+bool are_fractions_of_a_half_turn(const std::vector<Printed>& values, double zero, double roundings) {
   for (const int parts : {2, 3, 4, 5, 6, 8, 9, 10, 12, 15, 16, 18, 20, 24, 30, 36}) {
     const double step = std::numbers::pi / parts;
     const bool all = std::all_of(values.begin(), values.end(), [&](const Printed& one) {
       // Spreadsheets cut digits off: a whole digit, and the rounding of the binary number.
-      return std::abs(std::remainder(one.value, step)) <= 2.001 * one.half_digit + 1e-12;
+      return std::abs(std::remainder(one.value - zero, step)) <= 2.001 * roundings * one.half_digit + 1e-12;
     });
     if (all) return true;
   }
   return false;
+}
+
+/// Fractions of a half turn in rad, to the last digit: 0.524 1.047 1.571 … 6.283, or the same with another
+/// zero: 0.050 0.574 1.097 … Returns the zero; nullopt: the numbers show no radians.
+std::optional<double> zero_of_radians(const std::vector<Printed>& values) {
+  constexpr double kLeastResolution = 1000;  // largest value in steps of the last digit
+  if (values.size() < kFewestAngles) return std::nullopt;
+  const auto [least, most] =
+      std::minmax_element(values.begin(), values.end(),
+                          [](const Printed& one, const Printed& other) { return one.value < other.value; });
+  double half_digit = 0;
+  for (const Printed& one : values) half_digit = std::max(half_digit, one.half_digit);
+  const double span = most->value - least->value, step = kLeastResolution * half_digit;
+  const auto other =
+      std::count_if(values.begin(), values.end(), [](const Printed& one) { return one.value != 0; });
+  if (largest_of(values) <= kMost_rad && largest_of(values) >= step &&
+      static_cast<std::size_t>(other) >= kFewestAngles && are_fractions_of_a_half_turn(values, 0, 1))
+    return 0;
+  // With another zero: more numbers, because each difference agrees by chance more often.
+  if (values.size() <= kFewestAngles + 1 || span > kMost_rad || span < step) return std::nullopt;
+  // By chance, a number between two fractions of 5 deg agrees with one of them with this probability.
+  const double chance = 4 * 2.001 * half_digit / (std::numbers::pi / 36);
+  constexpr double kByChance = 1e-6;  // of a table with right units
+  if (!(std::pow(chance, static_cast<double>(values.size() - 1)) < kByChance)) return std::nullopt;
+  if (are_fractions_of_a_half_turn(values, least->value, 2)) return least->value;
+  return std::nullopt;
+}
+
+/// Positions in a unit below the millimetre that no machine moves by, and deviations that are no small part
+/// of the motion: a heading in um above positions in mm.
+constexpr double kSmallMachine_mm = 1;
+/// Piezo stages without a scale have deviations of some per cent of their motion, and move by up to 0.2 mm.
+constexpr double kPiezo_mm = 0.25;
+constexpr double kLargeShare = 0.005;  // of the motion; stages with a scale are ten times as good
+
+/// Size of the deviations of a position, mm: the median of the deviations, or the largest difference between
+/// the measured positions and their targets, from their median.
+std::optional<double> deviations_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                    const std::vector<SizedColumn>& columns, std::size_t position) {
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto unit = sized_unit(columns[k]);
+    if (!unit || unit->dimension != format::Dimension::kLength) continue;
+    std::vector<double> sizes;
+    if (columns[k].use == SizedColumn::Use::kDeviation && columns[k].positions == columns[position].name) {
+      // Exchanged units of two headings: judge_deviation_sizes() states them.
+      if (unit->factor > sized_unit(columns[position])->factor) return std::nullopt;
+      for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+        if (const auto value = sheet::number_at(sheet, row, k))
+          sizes.push_back(std::abs(*value) * unit->factor);
+    } else if (!columns[k].measures.empty() && columns[k].measures == columns[position].name) {
+      const std::vector<Difference> list = differences_of(sheet, table, columns, position, k);
+      if (!list.empty()) return list.back().from_middle;
+    }
+    if (!sizes.empty()) return maths::median(std::move(sizes));
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -223,32 +285,76 @@ void remove_whole_turns(sheet::Sheet& sheet, const sheet::SheetTable& table,
   }
 }
 
-std::vector<SizeDoubt> judge_angle_units(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+std::vector<SizeDoubt> judge_angle_units(sheet::Sheet& sheet, const sheet::SheetTable& table,
                                          const std::vector<SizedColumn>& columns) {
   std::vector<SizeDoubt> doubts;
+  std::vector<std::size_t> small;  // joints in deg that would move over a half turn in rad
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SizedColumn& column = columns[k];
     const bool angles = column.use == SizedColumn::Use::kPosition && !column.stated &&
                         (column.axis || !column.measures.empty());
     if (!angles || (column.unit != "rad" && column.unit != "deg")) continue;
     const std::vector<Printed> values = printed_values(sheet, table, k);
+    const double largest = largest_of(values);
+    if (column.axis && column.unit == "deg" && largest <= std::numbers::pi && largest > kPlainly_rad)
+      small.push_back(k);
     const bool degrees = column.unit == "rad" && are_degrees(values);
-    if (!degrees && !(column.unit == "deg" && are_radians(values))) continue;
-    double largest = 0;
-    for (const Printed& one : values) largest = std::max(largest, one.value);
+    const auto zero = column.unit == "deg" ? zero_of_radians(values) : std::nullopt;
+    if (!degrees && !zero) continue;
     const std::string& heading = table.headings[k].text;
     const char* const other = degrees ? "deg" : "rad";
     doubts.push_back(
         {k, sheet.line[table.heading_row], "",
-         fmt::format("the positions go to {:.6g}, {}: {} under a heading in {}; correct the unit of the "
-                     "heading to [{}]; if [{}] is right, give --column \"{}[{}]={}\"",
-                     largest,
-                     degrees ? largest > kMost_rad
-                                   ? fmt::format("{:.3g} turns in rad", largest / (2 * std::numbers::pi))
-                                   : std::string("and all are whole numbers")
-                             : std::string("and all are fractions of a half turn in rad"),
-                     degrees ? "degrees" : "radians", column.unit, other, column.unit, column.name,
-                     column.unit, heading)});
+         fmt::format(
+             "the positions go to {:.6g}, {}: {} under a heading in {}; correct the unit of the "
+             "heading to [{}]; if [{}] is right, give --column \"{}[{}]={}\"",
+             largest,
+             degrees ? largest > kMost_rad
+                           ? fmt::format("{:.3g} turns in rad", largest / (2 * std::numbers::pi))
+                           : std::string("and all are whole numbers")
+             : *zero == 0
+                 ? std::string("and all are fractions of a half turn in rad")
+                 : fmt::format("and all differ from {:.6g} by fractions of a half turn in rad", *zero),
+             degrees ? "degrees" : "radians", column.unit, other, column.unit, column.name, column.unit,
+             heading)});
+  }
+  constexpr std::size_t kJoints = 3;  // the axes of a robot, not those of a rotary table
+  if (doubts.empty() && small.size() >= kJoints)
+    sheet.notes.push_back(fmt::format(
+        "the positions of {} rotary axes are between -{:.2f} and {:.2f} deg: if they are in radians, correct "
+        "the units of their headings to [rad] (or give --column \"{}[rad]={}\" and so on)",
+        small.size(), std::numbers::pi, std::numbers::pi, columns[small.front()].name,
+        table.headings[small.front()].text));
+  return doubts;
+}
+
+std::vector<SizeDoubt> judge_small_motions(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                           const std::vector<SizedColumn>& columns) {
+  std::vector<SizeDoubt> doubts;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto unit = sized_unit(columns[k]);
+    if (columns[k].use != SizedColumn::Use::kPosition || !columns[k].axis || columns[k].stated || !unit ||
+        unit->dimension != format::Dimension::kLength || unit->factor >= 1)
+      continue;
+    const std::vector<Printed> values = printed_values(sheet, table, k);
+    if (values.size() < kFewestRows) continue;
+    const auto [least, most] =
+        std::minmax_element(values.begin(), values.end(),
+                            [](const Printed& one, const Printed& other) { return one.value < other.value; });
+    const double motion_mm = (most->value - least->value) * unit->factor;
+    const auto size_mm = deviations_of(sheet, table, columns, k);
+    if (motion_mm >= kSmallMachine_mm || !size_mm) continue;
+    const std::string text = fmt::format(
+        "the positions go from {:.6g} to {:.6g} {}, so {} would move by {} only, with deviations of {}; if "
+        "the "
+        "positions are in mm, correct the unit of the heading to [mm]; if [{}] is right, give --column "
+        "\"{}[{}]={}\"",
+        least->value, most->value, columns[k].unit, columns[k].name, size_text(motion_mm),
+        size_text(*size_mm), columns[k].unit, columns[k].name, columns[k].unit, table.headings[k].text);
+    if (motion_mm > kPiezo_mm && *size_mm > kLargeShare * motion_mm)
+      doubts.push_back({k, sheet.line[table.heading_row], "", text});
+    else
+      sheet.notes.push_back(fmt::format("\"{}\": {}", table.headings[k].text, text));
   }
   return doubts;
 }

@@ -21,8 +21,16 @@ void remove_whole_turns(sheet::Sheet& sheet, const sheet::SheetTable& table,
                         const std::vector<SizedColumn>& columns);
 
 /// Compares the positions of rotary axes with their unit: degrees under a heading in rad, and radians under a
-/// heading in deg. Returns at most one doubt for each column whose unit the user did not state.
-std::vector<SizeDoubt> judge_angle_units(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+/// heading in deg, also from another zero. Returns at most one doubt for each column whose unit the user did
+/// not state. `sheet` gets a note if the joints of a robot in deg move by less than a half turn in rad.
+std::vector<SizeDoubt> judge_angle_units(sheet::Sheet& sheet, const sheet::SheetTable& table,
                                          const std::vector<SizedColumn>& columns);
+
+/// Compares the motion of linear axes in a unit below the millimetre with their deviations: positions of 0 to
+/// 500 under a heading in um are those of a machine of half a millimetre. Returns a doubt if the motion is
+/// longer than that of a piezo stage and the deviations are more than 0.5 % of it; otherwise `sheet` gets a
+/// note.
+std::vector<SizeDoubt> judge_small_motions(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                           const std::vector<SizedColumn>& columns);
 
 }  // namespace vernier::importer

@@ -10,6 +10,7 @@
 #include "tools/format/units.h"
 #include "tools/import/sizes/deviation_sizes.h"
 #include "tools/import/sizes/position_sizes.h"
+#include "tools/import/sizes/row_shift.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/computed_rows.h"
 #include "tools/import/tables/directions.h"
@@ -194,6 +195,10 @@ void judge_sizes(SheetReading& reading) {
   note_decimal_parts(reading.sheet, reading.table, sized);
   std::vector<SizeDoubt> doubts = judge_angle_units(reading.sheet, reading.table, sized);
   remove_whole_turns(reading.sheet, reading.table, sized);
+  for (SizeDoubt& doubt : judge_small_motions(reading.sheet, reading.table, sized))
+    doubts.push_back(std::move(doubt));
+  for (SizeDoubt& doubt : judge_row_shift(reading.sheet, reading.table, sized))
+    doubts.push_back(std::move(doubt));
   for (SizeDoubt& doubt : judge_measured_positions(reading.sheet, reading.table, sized))
     doubts.push_back(std::move(doubt));
   for (SizeDoubt& doubt :

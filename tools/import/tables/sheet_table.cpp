@@ -227,7 +227,9 @@ void refuse_readings_without_position(const ImportTable& table, const Guess& gue
           throw text::InputError(
               {table.file, table.line[row]}, axis.name,
               "the position of this axis is empty in a row with a reading; if the value above "
-              "it applies, give --fill with the heading of the column");
+              "it applies, give --fill with the heading of the column; if the readings are shifted by one "
+              "row "
+              "against the positions, move their column");
     }
   }
 }
@@ -476,7 +478,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
               fmt::format(
                   "the cell of the position is empty in a row with a deviation; if the value above it "
                   "applies, give --fill \"{}\"; if the row is no measurement (a mean, a sum), delete the "
-                  "row",
+                  "row; if the deviations are shifted by one row against the positions, move their column",
                   table.headings[base].text));
         // Nine decimals are below every instrument: adding leaves no tail of binary digits.
         text = text::fixed_text(mm(at, position_unit) + sign * mm(text, column.unit), 9);

@@ -348,6 +348,24 @@ std::map<int, std::size_t> positions_by_direction(sheet::Sheet& sheet, sheet::Sh
   return found;
 }
 
+/// Notes a run whose first reading alone is empty: the first sign of a column that is shifted by a row and
+/// cut off at the end.
+void note_late_run(sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
+  constexpr std::size_t kFewestRows = 5;  // a short run may begin anywhere
+  std::size_t rows = 0, empty = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    if (sheet::is_blank(sheet.rows[row])) continue;
+    ++rows;
+    empty += sheet.rows[row][column].empty() ? 1 : 0;
+  }
+  if (rows < kFewestRows || empty != 1 || !sheet.rows[table.first_data][column].empty()) return;
+  sheet.notes.push_back(
+      fmt::format("\"{}\" (column {}) is empty in line {} only, the first row: if the column is shifted by "
+                  "one row against "
+                  "the positions, move it; otherwise the row has no reading",
+                  table.headings[column].text, column + 1, sheet.line[table.first_data]));
+}
+
 }  // namespace
 
 std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
@@ -399,6 +417,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   // A run against the order of the rows was read from the last row to the first: the rows of a measurement
   // file have the order of their readings.
   for (const RunColumn& one : runs) {
+    note_late_run(sheet, table, one.column);
     const auto own_positions = positions.find(one.sense);
     const int order = order_of_positions(
         sheet, table, own_positions == positions.end() ? others.front() : own_positions->second, 2);

@@ -2,11 +2,12 @@
 // Texts of a report in another language: {language, decimal, texts: {English: translation}}. In a text # is a number
 // and * any words: both are found again in the translation, in their order.
 
-const kNumber = '[+−-]?\\d[\\d.]*(?:e[+−-]?\\d+)?';
+const kNumber = '[+−-]?\\d(?:[\\d.]*\\d)?(?:e[+−-]?\\d+)?';
 const kNumbers = new RegExp(kNumber, 'g'),
   kOnlyNumber = new RegExp(`^${kNumber}( [%‰°]| [µu]?m|)$`);
 
-const kBetweenSentences = /(?<=[.!?]) (?=[A-Z\d])/;
+// A sentence begins with a capital letter, a number, or the name of a reading.
+const kBetweenSentences = /(?<=[.!?]) (?=[A-Z\d]|distance )/;
 
 let exact = new Map(),
   patterns = [],
@@ -69,18 +70,38 @@ function translated(words) {
   return sentences.length > 1 ? sentences.map(matched).join(' ') : words;
 }
 
-function matched(words) {
+/** The translation of a text that has no pattern with words in it. */
+function plain(words) {
   if (exact.has(words)) return exact.get(words);
   if (kOnlyNumber.test(words)) return local(words);
   const key = words.replace(kNumbers, '#');
   if (key !== words && exact.has(key)) return filled(exact.get(key), words.match(kNumbers));
   const withUnit = /^(.+) \[([^\]]*)\]$/.exec(words);
-  if (withUnit) return `${t(withUnit[1])} [${withUnit[2]}]`;
+  return withUnit ? `${t(withUnit[1])} [${withUnit[2]}]` : null;
+}
+
+/** The longest pattern of a text, as {index, found}. */
+function pattern(words) {
   // The words of one sentence stand for no words of the next one.
   const several = kBetweenSentences.test(words);
-  for (const { form, translation, sentences } of patterns) {
+  for (const [index, { form, sentences }] of patterns.entries()) {
     const found = several && !sentences ? null : form.exec(words);
-    if (found) return filled(translation, found.slice(1));
+    if (found) return { index, found };
   }
-  return words;
+  return { index: patterns.length, found: null };
+}
+
+function matched(words) {
+  const known = plain(words);
+  if (known !== null) return known;
+  const whole = pattern(words);
+  // A name at the end of a sentence is the same name: its longer pattern counts, which knows no dot.
+  const name = words.endsWith('.') ? words.slice(0, -1) : null;
+  if (name !== null && !kBetweenSentences.test(words)) {
+    const exactly = whole.found ? null : plain(name);
+    if (exactly !== null) return `${exactly}.`;
+    const other = pattern(name);
+    if (other.index < whole.index) return `${filled(patterns[other.index].translation, other.found.slice(1))}.`;
+  }
+  return whole.found ? filled(patterns[whole.index].translation, whole.found.slice(1)) : words;
 }

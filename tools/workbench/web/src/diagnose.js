@@ -94,6 +94,8 @@ function candidateTable(result, error, details) {
   );
 }
 
+const rms = (values) => Math.sqrt(values.reduce((sum, one) => sum + one * one, 0) / Math.max(1, values.length));
+
 /** The residual over what drives the candidate that is looked at, with what it would explain. */
 function overlayPlot() {
   const group = () => {
@@ -125,7 +127,9 @@ function overlayPlot() {
     words: () => ({
       x: `${column().name} [${column().unit}]`,
       y: `${group().kind} [${group().unit}]`,
-      title: store.overlay ? `residual of the fitted model; laid over: ${store.overlay.label}` : 'residual of the model as given',
+      title: store.overlay
+        ? `residual of the fitted model; laid over: ${store.overlay.label}`
+        : `residual before the fit, rms ${number(rms(group().value), 3)} ${group().unit}`,
     }),
   });
 }
@@ -233,6 +237,11 @@ export function diagnoseView(root) {
         'Candidates',
         result.candidates.length ? candidateTable(result, error, details) : el('p', { class: 'note' }, 'None.'),
         details,
+        el(
+          'p',
+          { class: 'note', id: 'which-residual' },
+          'The figures above are those of fitted models. Until a candidate is chosen, the plots show the residual before the fit; then that of the fitted model.',
+        ),
         el(
           'div',
           { class: 'beside-equal' },

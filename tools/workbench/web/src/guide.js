@@ -56,6 +56,9 @@ const kPath = [
   ],
 ];
 
+/** Steps without which no later one can be done: data and model. */
+const kNeeded = 2;
+
 /** The path as a row of steps; each can be gone to at any time, and the whole can be put away. */
 export function guide() {
   const list = el('ol', {}),
@@ -80,12 +83,19 @@ export function guide() {
     remember('away');
   });
   const draw = () => {
-    const next = kPath.find(([, , , done]) => !done());
+    // A step before one that is done is behind the user, although its own page was not used: improve fits, diagnoses and
+    // adds in one command, and a rule of the safety sheet may be accepted.
+    const last = kPath.reduce((found, [, , , done], k) => (done() ? k : found), -1);
+    const next = kPath.find(([, , , done], k) => !done() && (k > last || k < kNeeded));
     list.replaceChildren(
       ...kPath.map(([id, name, view, done], k) =>
         el(
           'li',
-          { class: done() ? 'done' : null, 'data-step': id, 'aria-current': next?.[0] === id ? 'step' : null },
+          {
+            class: done() ? 'done' : k < last && k >= kNeeded ? 'passed' : null,
+            'data-step': id,
+            'aria-current': next?.[0] === id ? 'step' : null,
+          },
           el('a', { href: `#${view}` }, `${k + 1} ${name}`),
         ),
       ),

@@ -53,6 +53,7 @@ function subjectBar() {
       el('option', { value: '' }, `choose a ${kind}`),
       ...names.map((name) => el('option', { value: name, selected: name === chosen ? '' : null }, name)),
     );
+    select.title = chosen ?? '';
   };
   const draw = () => {
     fill(machine, 'machine', store.machine);
