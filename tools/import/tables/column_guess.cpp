@@ -155,7 +155,8 @@ SheetColumn Guess::column(const sheet::Heading& heading) const {
       deviation = true;
     }
     if (axis.empty() && is_axis(word)) axis = word;
-    if (word == "x" || word == "y" || word == "z") small_axis = word;
+    if (std::find(columns::kPoint.begin(), columns::kPoint.end(), word) != columns::kPoint.end())
+      small_axis = word;
   }
   deviation |= sign_said(heading.text, SignPlace::kHeading) != SignSaid::kNothing;
   if (deviation && axis.empty() && is_temperature(heading.unit)) deviation = false;  // "Δ T [K]"
