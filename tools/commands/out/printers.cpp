@@ -139,8 +139,7 @@ model::Machine machine_to_correct(const model::Machine& fitted, const std::optio
         {arguments.common.machine, 0}, bed->name,
         "the fit took the bed as flat, and only a probe beside the nozzle touched it: these readings do not "
         "distinguish a bow of the bed from axes that are not straight. Give the touches (--touches FILE), "
-        "and "
-        "a few touches of the nozzle if possible (a second --touches); --bed none leaves the bed out");
+        "and a few touches of the nozzle if possible (a second --touches); --bed none leaves the bed out");
   return model::nominal_machine(fitted);
 }
 
@@ -174,7 +173,14 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
     fmt::print(human_stream(common.json),
                "the heights follow the {} \"{}\", X {:g} to {:g} mm, Y {:g} to {:g} mm\n",
                bed->shape ? "bed" : "plane", bed->name, bed->low[0], bed->high[0], bed->low[1], bed->high[1]);
-  print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);
+  if (bed && is_bed_or_axes(fitted))
+    fmt::print(
+        human_stream(common.json),
+        "with straight axes the touches show an error of the height of {:.4g} um rms ({} positions); with "
+        "the files {:.4g} um rms of it remain\n",
+        errors.rms_before_um, errors.positions, errors.rms_after_um);
+  else
+    print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);
   Json extra = errors_json(errors);
   std::vector<exchange::LeftOut> left = remaining(errors.after_um);
   add_unmeasured(left, correction);
