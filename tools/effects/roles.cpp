@@ -28,16 +28,43 @@ const model::CandidateInput& candidate_named(const model::Machine& machine, cons
       fmt::format("{}: the measurement has no column of that name that may be an input", name));
 }
 
-std::string line_of(const model::CandidateInput& candidate, model::InputRole role) {
-  model::Input input;
-  input.name = candidate.name, input.unit = candidate.unit, input.role = role;
+double mean_of_cells(const model::CandidateInput& candidate) {
   double sum = 0, count = 0;
   for (const double value : candidate.value)
     if (std::isfinite(value)) sum += value, ++count;
+  return count > 0 ? sum / count : 0;
+}
+
+std::string line_of(const model::CandidateInput& candidate, model::InputRole role) {
+  model::Input input;
+  input.name = candidate.name, input.unit = candidate.unit, input.role = role;
   return fmt::format("      <{} unit=\"{}\" reference=\"{}\" role=\"{}\"/>\n", candidate.name,
                      text::escape_attribute(candidate.unit),
-                     text::number_text(usual_reference(input, count > 0 ? sum / count : 0)),
+                     text::number_text(usual_reference(input, mean_of_cells(candidate))),
                      model::kInputRoleNames[static_cast<std::size_t>(role)]);
+}
+
+/// Cells of an undeclared column in one file.
+struct Cells {
+  std::size_t rows = 0, empty = 0;
+  std::size_t first_line = 0;  // line of the first empty cell
+
+  bool is_absent() const { return rows > 0 && empty == rows; }
+  bool is_unusable() const {
+    constexpr double kMostEmpty = 0.2;  // of the rows: too many rows to exclude for one column
+    return !is_absent() && static_cast<double>(empty) > kMostEmpty * static_cast<double>(rows);
+  }
+};
+
+std::vector<Cells> cells_of(const model::CandidateInput& candidate, const model::Measurement& rows) {
+  std::vector<Cells> files(rows.files.size());
+  for (std::size_t row = 0; row < rows.rows(); ++row) {
+    Cells& file = files[rows.file[row]];
+    ++file.rows;
+    if (std::isfinite(candidate.value[static_cast<Eigen::Index>(row)])) continue;
+    if (file.empty++ == 0) file.first_line = rows.line[row];
+  }
+  return files;
 }
 
 }  // namespace
@@ -80,6 +107,54 @@ void leave_out(model::Measurement& rows, const std::vector<ColumnRole>& roles) {
     return std::any_of(roles.begin(), roles.end(),
                        [&](const ColumnRole& one) { return one.ignored && one.column == candidate.name; });
   });
+}
+
+std::vector<std::string> complete_columns(model::Measurement& rows) {
+  std::vector<std::string> said;
+  std::vector<char> excluded(rows.rows(), 0);
+  const auto complete = [&](model::CandidateInput& candidate) {
+    const std::vector<Cells> files = cells_of(candidate, rows);
+    for (std::size_t file = 0; file < files.size(); ++file)
+      if (files[file].is_unusable()) {
+        said.push_back(
+            fmt::format("The column {} is empty in {} of {} rows of {}: it is not used as an input.",
+                        candidate.name, files[file].empty, files[file].rows, rows.files[file]));
+        return false;
+      }
+    model::Input input;
+    input.name = candidate.name;
+    input.unit = candidate.unit;
+    const double reference = usual_reference(input, mean_of_cells(candidate));
+    for (std::size_t file = 0; file < files.size(); ++file)
+      if (files[file].is_absent())
+        said.push_back(fmt::format(
+            "{0} has no column {1}: its rows count as read at {2:.4g}{3}{4}. If this is not right, add the "
+            "column (import table --set \"{1}[{4}]=VALUE\").",
+            rows.files[file], candidate.name, reference, candidate.unit.empty() ? "" : " ", candidate.unit));
+      else if (files[file].empty > 0)
+        said.push_back(
+            fmt::format("{} rows of {} with an empty cell in the column {} are excluded (the first in "
+                        "line {}).",
+                        files[file].empty, rows.files[file], candidate.name, files[file].first_line));
+    for (std::size_t row = 0; row < rows.rows(); ++row) {
+      double& value = candidate.value[static_cast<Eigen::Index>(row)];
+      if (std::isfinite(value)) continue;
+      if (files[rows.file[row]].is_absent())
+        value = reference;
+      else
+        excluded[row] = 1;
+    }
+    return true;
+  };
+  std::erase_if(rows.candidates, [&](model::CandidateInput& candidate) { return !complete(candidate); });
+  std::vector<std::size_t> keep;
+  for (std::size_t row = 0; row < excluded.size(); ++row)
+    if (excluded[row] == 0) keep.push_back(row);
+  if (keep.size() == rows.rows()) return said;
+  const std::size_t all = rows.excluded + rows.rows() - keep.size();
+  rows = model::select_rows(rows, keep);
+  rows.excluded = all;
+  return said;
 }
 
 }  // namespace vernier::effects

@@ -27,4 +27,11 @@ std::string with_declared_columns(const std::string& text, const model::Machine&
 /// Removes the ignored columns from the candidate inputs of a measurement.
 void leave_out(model::Measurement& rows, const std::vector<ColumnRole>& roles);
 
+/// Gives every undeclared column a value in every row, so that all models of a search are fitted to the same
+/// rows. In the rows of a file without the column, the column has the reference of an input
+/// (usual_reference()), as an input that a file does not record. Rows with an empty cell in a file that has
+/// the column are excluded; a column with more than a fifth of its cells empty in a file is not used instead.
+/// Returns one sentence for each change.
+std::vector<std::string> complete_columns(model::Measurement& rows);
+
 }  // namespace vernier::effects

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <set>
-#include <utility>
+#include <string>
+#include <vector>
 
 #include "tools/fit/coverage/reading_direction.h"
 #include "tools/fit/least_squares/statistics.h"
@@ -186,13 +186,12 @@ std::string varied_lengths(const model::Machine& machine, const model::Measureme
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Returns the names of the touched planes of unknown position if every fit row touches one of these with the
-/// same probe beside the tool point. Then a bow of a plane gives the same readings as an axis that is not
-/// straight: the bow is at the touched point, the error of the axis at its position.
-std::string planes_of_one_probe(const model::Machine& machine, const model::Measurement& m) {
+/// Returns the names of the touched planes of unknown position if all fit rows touch one of these, and a
+/// probe beside the tool point was used. Then a bow of a plane gives nearly the same readings as an axis that
+/// is not straight: the bow is at the touched point, the error of the axis at its position.
+std::string planes_of_probe(const model::Machine& machine, const model::Measurement& m) {
   std::set<std::string> names;
   bool beside = false;
-  std::array<std::optional<std::pair<double, double>>, format::columns::kProbe.size()> range;
   for (std::size_t row = 0; row < m.rows(); ++row) {
     if (m.check[row] != 0) continue;
     const std::size_t thing = m.thing_of(row);
@@ -200,13 +199,9 @@ std::string planes_of_one_probe(const model::Machine& machine, const model::Meas
         m.things[thing].in_measuring_frame())
       return {};
     names.insert(m.things[thing].label);
-    for (std::size_t k = 0; k < range.size(); ++k) {
-      const auto input = machine.find_input(format::columns::kProbe[k]);
-      const double at = input ? m.states.input[*input][static_cast<Index>(row)] : 0;
-      beside = beside || at != 0;
-      if (!range[k]) range[k] = {at, at};
-      if (at != range[k]->first) return {};
-    }
+    for (const char* const column : format::columns::kProbe)
+      if (const auto input = machine.find_input(column))
+        beside = beside || m.states.input[*input][static_cast<Index>(row)] != 0;
   }
   return beside ? fmt::format("{}", fmt::join(names, ", ")) : "";
 }
@@ -250,6 +245,18 @@ void add_exact_lengths(const FitResult& result, const model::Measurement& m,
          "size of the machine."});
 }
 
+/// A sentence about the directions of which model_discrepancy() knows nothing; empty if there are none.
+std::string unread_in_words(const FitResult& result, const model::Measurement& m) {
+  const auto fitted = squares_of(result, m, false), checked = squares_of(result, m, true);
+  if (fitted[3].count + checked[3].count > 0) return {};  // readings of no single direction
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (fitted[k].count + checked[k].count == 0) names.emplace_back(1, "xyz"[k]);
+  if (names.empty()) return {};
+  return fmt::format(" No reading is along {}: the mean of the other directions is assumed there.",
+                     fmt::join(names, " or "));
+}
+
 }  // namespace
 
 bool repeats_in_other_runs(const model::Measurement& m) {
@@ -291,13 +298,13 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
       !far.empty())
     list.push_back({"far-from-nominal", 1, far});
   add_exact_lengths(result, m, list);
-  if (const std::string names = planes_of_one_probe(result.machine, m); !names.empty())
+  if (const std::string names = planes_of_probe(result.machine, m); !names.empty())
     list.push_back(
         {kFlatnessAssumed, 0,
-         fmt::format("{} was taken as flat. All rows touch it with one probe beside the tool point: a "
-                     "bow of it counts as an error of the axes. Touch some points with the tool point "
-                     "(the nozzle) too.",
-                     names)});
+         fmt::format(
+             "{} was taken as flat, and all rows touch it: a bow of it counts as an error of the axes, at "
+             "the position of the axes and not where the probe touched.",
+             names)});
   const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],
                          1e3 * record.discrepancy_mm[2]);
   if (lack_um.maxCoeff() > 0) {
@@ -308,8 +315,8 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                                  : "The residuals along one direction, or the residuals of the check rows "
                                    "(held-out rows), are larger than the noise of their readings";
     list.push_back({"something-missing", times,
-                    fmt::format("{}: the model lacks an effect of {:.3g}, {:.3g}, {:.3g} um in x, y, z.",
-                                what, lack_um.x(), lack_um.y(), lack_um.z())});
+                    fmt::format("{}: the model lacks an effect of {:.3g}, {:.3g}, {:.3g} um in x, y, z.{}",
+                                what, lack_um.x(), lack_um.y(), lack_um.z(), unread_in_words(result, m))});
   }
   if (!result.noise_um && result.before.rms_um)
     list.push_back({"noise-unknown", 0,

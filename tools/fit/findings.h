@@ -28,8 +28,8 @@ Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurem
 /// dependences), `not-distinguished` (number of alternatives), `absurd`, `not-converged`, `size-unknown` (no
 /// reading has a known length; value: the plausible share), `taken-as-exact` (a length that gives the machine
 /// its size, and whose own error no reading shows; value 0), `far-from-nominal` (a fit of touches gave
-/// another machine than that of the file), `flatness-assumed` (one probe beside the tool point touched planes
-/// of unknown position, and there are no other rows; value 0). `record`: the fit record, complete except for
+/// another machine than that of the file), `flatness-assumed` (all rows touch planes of unknown position,
+/// some of them with a probe beside the tool point; value 0). `record`: the fit record, complete except for
 /// the findings.
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "tools/diagnose/diagnosis.h"
+#include "tools/effects/roles.h"
 #include "tools/fit/coverage/domain.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/least_squares/statistics.h"
@@ -67,11 +68,13 @@ ResultOfPython compare_of_python(const MachineOfPython& machine, const Measureme
 ResultOfPython diagnose_of_python(const MachineOfPython& machine, const MeasurementsOfPython& measurements,
                                   std::size_t most) {
   ResultOfPython result;
-  const model::Measurement m = model::read_measurement(measurements.paths, machine.machine);
+  model::Measurement m = model::read_measurement(measurements.paths, machine.machine);
+  const std::vector<std::string> column_sentences = effects::complete_columns(m);
   diagnose::DiagnoseOptions options;
   options.effects = effects::effect_catalogue({});
   options.most_effects = most;
   diagnose::Diagnosis found = diagnose::diagnose(machine.text, machine.machine, m, options);
+  for (const std::string& sentence : column_sentences) found.explanation += " " + sentence;
   found.next_measurement = plan::advice_for(machine.text, machine.machine, m, found, options.effects);
   result.json = results::diagnosis_json(found, m);
   // As --residuals of the command: what the machine at the end of the ladder leaves, read with its inputs.

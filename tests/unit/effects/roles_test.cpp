@@ -77,6 +77,30 @@ TEST_F(Roles, IgnoredOnesAreAsIfTheyWereNotThere) {
   EXPECT_EQ(m.candidates[1].name, "level");
 }
 
+// With an empty cell, each fit of the search had rows of its own: chi^2 of other rows was compared, and
+// residuals of rows were taken from others.
+TEST_F(Roles, EachUndeclaredColumnGetsAValueInEveryRow) {
+  Measurement rows = parse_measurement(
+      "X[mm],x[mm],T[degC],few\n0,0,22,\n100,100,,\n200,200,23,\n300,300,24,1\n400,400,25,\n500,500,26,\n",
+      "laser.csv", machine());
+  append_measurement(rows, parse_measurement("X[mm],x[mm]\n0,0\n600,600\n", "tracker.csv", machine()), false);
+  const std::vector<std::string> said = complete_columns(rows);
+  ASSERT_EQ(rows.candidates.size(), 1u);  // `few` is not used
+  EXPECT_EQ(rows.candidates[0].name, "T");
+  Column expected(7);
+  expected << 22, 23, 24, 25, 26, 20, 20;
+  EXPECT_EQ((rows.candidates[0].value - expected).matrix().norm(), 0);
+  EXPECT_EQ(rows.rows(), 7u);
+  EXPECT_EQ(rows.excluded, 1u);
+  ASSERT_EQ(said.size(), 3u);
+  EXPECT_NE(said[0].find("1 rows of laser.csv"), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find("line 3"), std::string::npos) << said[0];
+  EXPECT_NE(said[1].find("tracker.csv has no column T: its rows count as read at 20 degC"), std::string::npos)
+      << said[1];
+  EXPECT_NE(said[2].find("few is empty in 5 of 6 rows of laser.csv"), std::string::npos) << said[2];
+  EXPECT_TRUE(complete_columns(rows).empty()) << "nothing is left to do";
+}
+
 TEST_F(Roles, WhatIsNoRoleOrNoColumnIsRefusedByName) {
   const auto said = [&](const std::string& statement) -> std::string {
     try {

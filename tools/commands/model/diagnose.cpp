@@ -10,6 +10,7 @@
 #include "tools/diagnose/causes.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/sentences.h"
+#include "tools/effects/roles.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/model/machine_reader.h"
@@ -111,13 +112,15 @@ void write_residuals(const DiagnoseArguments& arguments, const diagnose::Diagnos
 }
 
 void run_diagnose(const DiagnoseArguments& arguments) {
-  const auto [text, machine, m] = read_survey(arguments.survey);
+  auto [text, machine, m] = read_survey(arguments.survey);
+  const std::vector<std::string> column_sentences = effects::complete_columns(m);
   diagnose::DiagnoseOptions options;
   options.effects = effects::effect_catalogue(arguments.effects);
   options.most_effects = arguments.most;
   Progress progress("diagnose");
   options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
   diagnose::Diagnosis diagnosis = diagnose::diagnose(text, machine, m, options);
+  for (const std::string& sentence : column_sentences) diagnosis.explanation += " " + sentence;
   diagnosis.next_measurement = plan::advice_for(text, machine, m, diagnosis, options.effects);
   const nlohmann::ordered_json json = results::diagnosis_json(diagnosis, m);
   if (!arguments.output.empty()) {

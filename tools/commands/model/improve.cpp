@@ -14,6 +14,7 @@
 #include "tools/compile/compile.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/sentences.h"
+#include "tools/effects/roles.h"
 #include "tools/exchange/printer/bed_shape.h"
 #include "tools/format/columns.h"
 #include "tools/model/machine_reader.h"
@@ -130,6 +131,7 @@ class Improver {
       : arguments_(arguments),
         out_(human_stream(arguments.json)),
         survey_(read_survey(arguments.survey)),
+        column_sentences_(effects::complete_columns(survey_.rows)),
         text_(std::move(survey_.text)),
         machine_(std::move(survey_.machine)),
         first_(machine_),
@@ -152,6 +154,7 @@ class Improver {
     Progress progress("diagnose");
     options.progress = [&](double share, const std::string& step) { progress.update(share, step); };
     diagnose::Diagnosis d = diagnose::diagnose(text_, machine_, rows_, options);
+    for (const std::string& sentence : column_sentences_) d.explanation += " " + sentence;
     d.next_measurement = plan::advice_for(text_, machine_, rows_, d, effects_);
     if (round == 0 && !d.end.absurd.empty()) throw text::LimitNotMet(d.end.absurd + "; nothing is written");
     last_ = results::diagnosis_json(d, rows_);
@@ -444,6 +447,7 @@ class Improver {
   const ImproveArguments& arguments_;
   std::FILE* out_;
   Survey survey_;
+  std::vector<std::string> column_sentences_;  // how undeclared columns got a value in every row
   std::string text_;
   model::Machine machine_, first_;
   model::Measurement rows_, all_rows_;

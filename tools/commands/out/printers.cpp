@@ -137,7 +137,8 @@ model::Machine machine_to_correct(const model::Machine& fitted, const std::optio
   if (arguments.touches.empty())
     throw text::InputError(
         {arguments.common.machine, 0}, bed->name,
-        "the fit took the bed as flat, and only a probe beside the nozzle touched it: these readings do not "
+        "the fit had only touches of this plane and took it as flat: touches of a probe beside the nozzle do "
+        "not "
         "distinguish a bow of the bed from axes that are not straight. Give the touches (--touches FILE), "
         "and a few touches of the nozzle if possible (a second --touches); --bed none leaves the bed out");
   return model::nominal_machine(fitted);
