@@ -341,7 +341,19 @@ Heading heading_of_two(const std::string& upper, const std::string& lower) {
 
 }  // namespace
 
+bool is_line_of_units(const Sheet& sheet, std::size_t row) {
+  std::size_t units = 0;
+  for (const std::string& cell : sheet.rows[row]) {
+    if (cell.empty()) continue;
+    if (!unit_meant(cell)) return false;
+    ++units;
+  }
+  return units > 0;
+}
+
 bool is_row_of_data(const Sheet& sheet, std::size_t row) {
+  // Headings that are numbers of runs (1, 2, 3) have their units below.
+  if (row + 1 < sheet.rows.size() && is_line_of_units(sheet, row + 1)) return false;
   std::size_t numbers = 0, filled = 0;
   for (const std::string& cell : sheet.rows[row]) {
     filled += cell.empty() || is_date(cell) ? 0 : 1;

@@ -39,8 +39,11 @@ struct SheetTable {
   std::optional<std::size_t> upper_row;  // if the headings have two lines, index of the first line
 };
 
+/// True if all cells of a row that are not empty are units.
+bool is_line_of_units(const Sheet& sheet, std::size_t row);
+
 /// True if a row is a row of data: it contains at least one number, and at least as many numbers as words.
-/// Dates count neither as numbers nor as words.
+/// Dates count neither as numbers nor as words. A row above a line of units is a row of headings.
 bool is_row_of_data(const Sheet& sheet, std::size_t row);
 
 /// Finds the parts of a sheet. The first row with mostly numbers is the first row of data. Throws InputError

@@ -25,14 +25,15 @@ bool is_word(const std::string& cell) {
          text::in_small_letters(cell) != "n/a" && cell.find_first_not_of('-') != std::string::npos;
 }
 
-/// No number, and at least two words in columns that have numbers in the row of data before.
+/// No number, and at least two words in columns that have numbers in the row of data before. A line of units
+/// alone (below headings that are numbers: 1, 2, 3) begins no table.
 bool is_line_of_headings(const Sheet& sheet, std::size_t row, std::size_t data) {
   std::size_t words = 0;
   for (std::size_t k = 0; k < sheet.rows[row].size(); ++k) {
     if (is_number(sheet, row, k)) return false;
     words += is_number(sheet, data, k) && is_word(sheet.rows[row][k]) ? 1 : 0;
   }
-  return words >= 2;
+  return words >= 2 && !is_line_of_units(sheet, row);
 }
 
 }  // namespace

@@ -718,6 +718,26 @@ TEST(SheetCells, DirectionsOfAnAxisWithItsLetterAndInWordsOfAWay) {
               "X[mm],dirX,x[mm]\n0,1,0.001\n100,1,100.002\n100,-1,100.003\n0,-1,0.004\n");
 }
 
+TEST(SheetCells, AMotionOutAndBackWithoutDirectionsIsSaid) {
+  const std::string rows = "X [mm];Abweichung X [um]\n0;1\n100;2\n200;3\n200;7\n100;6\n0;5\n";
+  EXPECT_THAT(read(rows),
+              HasSubstr("note: the rows go out and back along X (back in lines 6, 7), and no column states "
+                        "the approach direction"));
+  EXPECT_THAT(read("X [mm];dirX;Abweichung X [um]\n0;1;1\n100;1;2\n200;1;3\n200;-1;7\n100;-1;6\n0;-1;5\n"),
+              Not(HasSubstr("out and back")));
+  // A second run in the same direction, and the lines of a grid.
+  EXPECT_THAT(read("X [mm];Abweichung X [um]\n0;1\n100;2\n200;3\n0;1\n100;2\n200;3\n"),
+              Not(HasSubstr("out and back")));
+  EXPECT_THAT(read("X [mm];Y [mm];Abweichung X [um]\n0;0;1\n100;0;2\n200;0;3\n200;9;1\n100;9;2\n0;9;3\n"),
+              Not(HasSubstr("out and back")));
+}
+
+TEST(SheetCells, NumbersOfRunsAboveALineOfUnitsAreHeadings) {
+  EXPECT_THAT(read("Pos. X [mm];1;2\nmm;um;um\n0;1;2\n50;3;4\n"),
+              AllOf(StartsWith("refused: "), HasSubstr("no column of the table is a reading"),
+                    Not(HasSubstr("2 tables"))));
+}
+
 TEST(SheetRemedy, ADeviationWithoutAPositionNamesTheOptionThatReadsIt) {
   struct Remedy {
     const char *table, *option, *deviation, *constant, *read;

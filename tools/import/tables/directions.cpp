@@ -223,21 +223,27 @@ void judge_runs(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector
       order, heading, columns[k].name, heading);
 }
 
+RowOrder order_of(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
+                  std::size_t position, std::size_t direction) {
+  const SheetWishes usual;
+  const Guess guess(usual);
+  RowOrder order{table.first_data, position, direction, {}};
+  for (std::size_t other = 0; other < columns.size(); ++other)
+    if (other != position && columns[other].use == SheetColumn::Use::kColumn &&
+        (guess.is_axis(columns[other].name) || columns[other].name == format::columns::kSetup))
+      order.others.push_back(other);
+  return order;
+}
+
 /// One direction in all rows of a motion out and back, and a change of the direction at another row than the
 /// turn of the motion: a doubt if only this axis moves and the column has its meaning by its heading,
 /// otherwise a note.
 void judge_order(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
                  std::size_t position, std::size_t k) {
   if (!columns[k].doubt.empty()) return;
-  const SheetWishes usual;
-  const Guess guess(usual);
-  RowOrder order{table.first_data, position, k, {}};
-  for (std::size_t other = 0; other < columns.size(); ++other)
-    if (other != position && columns[other].use == SheetColumn::Use::kColumn &&
-        (guess.is_axis(columns[other].name) || columns[other].name == format::columns::kSetup))
-      order.others.push_back(other);
   const DirectionDoubt doubt =
-      doubt_of_directions(sheet, order, [](const std::string& cell) { return sense_of_code(code_of(cell)); });
+      doubt_of_directions(sheet, order_of(table, columns, position, k),
+                          [](const std::string& cell) { return sense_of_code(code_of(cell)); });
   if (doubt.kind == DirectionDoubt::Kind::kNone) return;
   const bool same = doubt.kind == DirectionDoubt::Kind::kSame;
   const std::string &heading = table.headings[k].text, &axis = columns[position].name;
@@ -395,11 +401,36 @@ void note_direction_not_read(sheet::Sheet& sheet, const sheet::SheetTable& table
   }
 }
 
+/// Notes a motion of one axis out and back in a table without directions: no reversal error can be found.
+void note_missing_direction(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                            const std::vector<SheetColumn>& columns) {
+  const SheetWishes usual;
+  const Guess guess(usual);
+  if (std::any_of(columns.begin(), columns.end(), [](const SheetColumn& column) {
+        return column.use == SheetColumn::Use::kColumn && is_sense(column.name);
+      }))
+    return;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k].use != SheetColumn::Use::kColumn || !guess.is_axis(columns[k].name)) continue;
+    // As if each row had the direction +: the rows on the way back contradict.
+    const DirectionDoubt doubt =
+        doubt_of_directions(sheet, order_of(table, columns, k, k), [](const std::string&) { return 1; });
+    if (doubt.kind != DirectionDoubt::Kind::kSame || !doubt.certain) continue;
+    sheet.notes.push_back(fmt::format(
+        "the rows go out and back along {0} (back in {1}), and no column states the approach direction: no "
+        "reversal error (backlash) can be found; add a column with the heading dir{0}, 1 in the rows out and "
+        "-1 in the rows back",
+        columns[k].name, lines_text(doubt.lines)));
+  }
+}
+
 }  // namespace
 
 void settle_directions(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
                        bool unfolded) {
+  const std::size_t notes = sheet.notes.size();
   note_direction_not_read(sheet, table, columns);
+  if (!unfolded && sheet.notes.size() == notes) note_missing_direction(sheet, table, columns);
   for (std::size_t k = 0; k < columns.size(); ++k)
     if (columns[k].use == SheetColumn::Use::kColumn && is_sense(columns[k].name))
       settle_column(sheet, table, columns, k, unfolded);
