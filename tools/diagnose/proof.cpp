@@ -41,9 +41,13 @@ Eigen::MatrixXd in_units_of_noise(const model::Measurement& rows, const std::vec
 double variance_by_parameters(const model::Measurement& rows, std::size_t file, const fit::FitResult& before,
                               const fit::FitResult& after, const fit::NoiseModel& noise, double variance) {
   const std::vector<std::size_t> check = check_observations(rows);
-  const Eigen::MatrixXd jacobian = model::linearise(after.machine, rows, after.parameters).jacobian;
-  Eigen::MatrixXd columns(static_cast<Eigen::Index>(check.size()), jacobian.cols() + 1);
-  columns << jacobian(check, Eigen::all), (before.residual - after.residual)(check);
+  const model::SparseRows jacobian = model::linearise(after.machine, rows, after.parameters).jacobian;
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(check.size()), jacobian.cols() + 1);
+  for (std::size_t i = 0; i < check.size(); ++i)
+    for (model::SparseRows::InnerIterator one(jacobian, static_cast<Eigen::Index>(check[i])); one; ++one)
+      columns(static_cast<Eigen::Index>(i), one.col()) = one.value();
+  columns.rightCols<1>() = (before.residual - after.residual)(check);
   columns = in_units_of_noise(rows, check, std::move(columns), noise, variance);
   Eigen::VectorXd change = columns.rightCols<1>();
   for (std::size_t i = 0; i < check.size(); ++i)

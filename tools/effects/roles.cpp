@@ -125,17 +125,22 @@ std::vector<std::string> complete_columns(model::Measurement& rows) {
     input.name = candidate.name;
     input.unit = candidate.unit;
     const double reference = usual_reference(input, mean_of_cells(candidate));
-    for (std::size_t file = 0; file < files.size(); ++file)
+    std::vector<std::string> without;  // files
+    for (std::size_t file = 0; file < files.size(); ++file) {
       if (files[file].is_absent())
-        said.push_back(fmt::format(
-            "{0} has no column {1}: its rows count as read at {2:.4g}{3}{4}. If this is not right, add the "
-            "column (import table --set \"{1}[{4}]=VALUE\").",
-            rows.files[file], candidate.name, reference, candidate.unit.empty() ? "" : " ", candidate.unit));
+        without.push_back(rows.files[file]);
       else if (files[file].empty > 0)
-        said.push_back(
-            fmt::format("{} rows of {} with an empty cell in the column {} are excluded (the first in "
-                        "line {}).",
-                        files[file].empty, rows.files[file], candidate.name, files[file].first_line));
+        said.push_back(fmt::format(
+            "{} rows of {} with an empty cell in the column {} are excluded (the first in line {}).",
+            files[file].empty, rows.files[file], candidate.name, files[file].first_line));
+    }
+    if (!without.empty())
+      said.push_back(
+          fmt::format("No column {1} in {0}: these rows count as read at {2:.4g}{3}{4}. If this is not "
+                      "right, add the column "
+                      "(import table --set \"{1}[{4}]=VALUE\").",
+                      text::joined(without, ", "), candidate.name, reference,
+                      candidate.unit.empty() ? "" : " ", candidate.unit));
     for (std::size_t row = 0; row < rows.rows(); ++row) {
       double& value = candidate.value[static_cast<Eigen::Index>(row)];
       if (std::isfinite(value)) continue;

@@ -95,7 +95,8 @@ TEST_F(Roles, EachUndeclaredColumnGetsAValueInEveryRow) {
   ASSERT_EQ(said.size(), 3u);
   EXPECT_NE(said[0].find("1 rows of laser.csv"), std::string::npos) << said[0];
   EXPECT_NE(said[0].find("line 3"), std::string::npos) << said[0];
-  EXPECT_NE(said[1].find("tracker.csv has no column T: its rows count as read at 20 degC"), std::string::npos)
+  EXPECT_NE(said[1].find("No column T in tracker.csv: these rows count as read at 20 degC"),
+            std::string::npos)
       << said[1];
   EXPECT_NE(said[2].find("few is empty in 5 of 6 rows of laser.csv"), std::string::npos) << said[2];
   EXPECT_TRUE(complete_columns(rows).empty()) << "nothing is left to do";
