@@ -203,6 +203,7 @@ class Diagnoser {
 
   /// The many readings of one instrument must not hide that those of another contradict a step.
   bool is_contradicted(const Proof& proof, const fit::FitResult& before, const fit::FitResult& after) const {
+    if (proof.files.empty()) return false;
     return is_contradicted_by_a_file(proof, options_.thresholds.proof,
                                      model::rebind(measurement_, base_.machine, after.machine), before, after,
                                      finder_.evidence().noise_of_file(), variance_beside(after));

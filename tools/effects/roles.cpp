@@ -28,13 +28,6 @@ const model::CandidateInput& candidate_named(const model::Machine& machine, cons
       fmt::format("{}: the measurement has no column of that name that may be an input", name));
 }
 
-double mean_of_cells(const model::CandidateInput& candidate) {
-  double sum = 0, count = 0;
-  for (const double value : candidate.value)
-    if (std::isfinite(value)) sum += value, ++count;
-  return count > 0 ? sum / count : 0;
-}
-
 std::string line_of(const model::CandidateInput& candidate, model::InputRole role) {
   model::Input input;
   input.name = candidate.name, input.unit = candidate.unit, input.role = role;
@@ -68,6 +61,13 @@ std::vector<Cells> cells_of(const model::CandidateInput& candidate, const model:
 }
 
 }  // namespace
+
+double mean_of_cells(const model::CandidateInput& candidate) {
+  double sum = 0, count = 0;
+  for (const double value : candidate.value)
+    if (std::isfinite(value)) sum += value, ++count;
+  return count > 0 ? sum / count : 0;
+}
 
 ColumnRole parse_column_role(const std::string& statement) {
   const std::size_t sign = statement.find('=');

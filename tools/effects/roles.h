@@ -27,6 +27,9 @@ std::string with_declared_columns(const std::string& text, const model::Machine&
 /// Removes the ignored columns from the candidate inputs of a measurement.
 void leave_out(model::Measurement& rows, const std::vector<ColumnRole>& roles);
 
+/// Returns the mean of the cells of an undeclared column that have a value; 0 if none has one.
+double mean_of_cells(const model::CandidateInput& candidate);
+
 /// Gives every undeclared column a value in every row, so that all models of a search are fitted to the same
 /// rows. In the rows of a file without the column, the column has the reference of an input
 /// (usual_reference()), as an input that a file does not record. Rows with an empty cell in a file that has

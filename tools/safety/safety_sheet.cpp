@@ -408,8 +408,7 @@ std::string SafetySheet::refusal() const {
   if (worst.rule == SafetyRule::kUncertainty && !not_measured.empty())
     text += fmt::format(
         "; measure more poses, or fit the machine again without the parameters that no reading determines: "
-        "fit "
-        "--hold \"{}\"; a correction that is nearly zero fails this rule too, and can be accepted",
+        "fit --hold \"{}\"; a correction that is nearly zero fails this rule too, and can be accepted",
         not_measured);
   else if (const std::string remedy = text_of(worst.rule).remedy; !remedy.empty())
     text += "; " + remedy;

@@ -225,8 +225,7 @@ TEST_F(OutputFolder, ExportSaysThatItsFiguresAreThoseOfTheModel) {
   EXPECT_NE(said().find("um rms of this prediction remain"), std::string::npos) << said();
 }
 
-/// Linear tests of three axes, as rows of `X[mm],Y[mm],Z[mm],dirX,run,x[mm],u[um],role`. `sorted`: the rows
-/// back are in the order of a table, not of their readings.
+/// A linear test of one axis, out and back in three runs, in the order of its readings.
 std::string laser_rows(int axis) {
   const std::string letters = "XYZ", small = "xyz";
   std::string rows = std::string("X[mm],Y[mm],Z[mm],dir") + letters[static_cast<std::size_t>(axis)] +

@@ -82,7 +82,7 @@ bool has(const Machine& machine, const std::string& code) {
                      [&](const FitRecord::Finding& one) { return one.code == code; });
 }
 
-/// Text of the finding; empty if there is none.
+/// Returns the text of a finding of the last fit; no text if the fit has no finding with this code.
 std::string said(const Machine& machine, const std::string& code) {
   for (const FitRecord::Finding& one : machine.fitted->findings)
     if (one.code == code) return one.text;

@@ -216,8 +216,7 @@ class Improver {
     if (by_rows)
       text +=
           " A drift from row to row is a cause only if the rows are in the order of their readings: a table "
-          "that "
-          "is sorted by its positions has another order.";
+          "that is sorted by its positions has another order.";
     return text;
   }
 

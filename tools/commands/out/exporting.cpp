@@ -21,8 +21,7 @@ namespace {
 /// The errors of an export are errors of the model, not of the machine.
 constexpr const char* kNotMeasured =
     "The machine was not measured with these files: an error that the model does not contain remains. "
-    "Measure "
-    "the machine again while the files are active.";
+    "Measure the machine again while the files are active.";
 
 /// Assurance of an export: the machine may run with the correction, all of its errors are in the files, and
 /// the error between the lines is within the tolerance.

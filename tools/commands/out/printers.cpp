@@ -125,21 +125,17 @@ bool is_bed_or_axes(const model::Machine& machine) {
                      [](const auto& finding) { return finding.code == fit::kFlatnessAssumed; });
 }
 
-/// The machine whose errors the files correct. If touches of one probe beside the nozzle are all that the fit
-/// had, the heights follow the touches as those that the firmware measures itself: the axes are taken as
-/// straight. The errors of the fitted axes would be at other positions than the heights that show them.
-model::Machine machine_to_correct(const model::Machine& fitted, const std::optional<exchange::Bed>& bed,
+/// Returns the machine without the errors of its axes. If touches of the bed are all that the fit had, some
+/// of them with a probe beside the nozzle, the heights follow the touches like the mesh of the firmware
+/// itself. The errors of the fitted axes would be at other positions than the heights that show them.
+model::Machine with_straight_axes(const model::Machine& fitted, const exchange::Bed& bed,
                                   const PrinterArguments& arguments) {
-  if (!bed || !is_bed_or_axes(fitted)) {
-    require_safe(fitted, arguments.common, true);
-    return fitted;
-  }
   if (arguments.touches.empty())
     throw text::InputError(
-        {arguments.common.machine, 0}, bed->name,
+        {arguments.common.machine, 0}, bed.name,
         "the fit had only touches of this plane and took it as flat: touches of a probe beside the nozzle do "
-        "not "
-        "distinguish a bow of the bed from axes that are not straight. Give the touches (--touches FILE), "
+        "not distinguish a bow of the bed from axes that are not straight. Give the touches (--touches "
+        "FILE), "
         "and a few touches of the nozzle if possible (a second --touches); --bed none leaves the bed out");
   return model::nominal_machine(fitted);
 }
@@ -155,7 +151,9 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   const exchange::PrinterFeatures features = exchange::features_of(firmware, present);
   std::optional<exchange::Bed> bed =
       features.mesh && arguments.bed != kNoBed ? exchange::bed_of(fitted, axes, arguments.bed) : std::nullopt;
-  const model::Machine machine = machine_to_correct(fitted, bed, arguments);
+  const bool follows_touches = bed && is_bed_or_axes(fitted);
+  if (!follows_touches) require_safe(fitted, common, true);
+  const model::Machine machine = follows_touches ? with_straight_axes(fitted, *bed, arguments) : fitted;
   const model::States at = state_of(machine, common);
   if (!arguments.touches.empty() && !bed)
     throw text::InputError(
@@ -174,7 +172,7 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
     fmt::print(human_stream(common.json),
                "the heights follow the {} \"{}\", X {:g} to {:g} mm, Y {:g} to {:g} mm\n",
                bed->shape ? "bed" : "plane", bed->name, bed->low[0], bed->high[0], bed->low[1], bed->high[1]);
-  if (bed && is_bed_or_axes(fitted))
+  if (follows_touches)
     fmt::print(
         human_stream(common.json),
         "with straight axes the touches show an error of the height of {:.4g} um rms ({} positions); with "

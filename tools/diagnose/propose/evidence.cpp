@@ -8,6 +8,7 @@
 
 #include "tools/effects/input_class.h"
 #include "tools/effects/probe.h"
+#include "tools/effects/roles.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/noise/noise_estimate.h"
 #include "tools/fit/selection.h"
@@ -100,14 +101,9 @@ void Evidence::take_inputs() {
     machine_.inputs.push_back(input);
     model::Column column = candidate.value;
     // An empty cell gets the column's mean, which has the least influence.
-    double sum = 0, count = 0;
-    for (const double value : column)
-      if (std::isfinite(value)) {
-        sum += value;
-        ++count;
-      }
+    const double mean = effects::mean_of_cells(candidate);
     for (double& value : column)
-      if (!std::isfinite(value)) value = count > 0 ? sum / count : 0;
+      if (!std::isfinite(value)) value = mean;
     measurement_.states.input.push_back(column);
   }
   measurement_.candidates.clear();
