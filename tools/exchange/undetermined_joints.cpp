@@ -5,22 +5,15 @@
 
 #include "tools/model/expression.h"
 #include "tools/model/fit_record.h"
+#include "tools/model/parameters.h"
 
 namespace vernier::exchange {
 namespace {
 
-/// A parameter is a static, or a station of a table: "table.J1[30].rX" for the symbol "table.J1.rX".
-bool is_of(std::string parameter, const std::string& symbol) {
-  const auto open = parameter.find('['), close = parameter.find(']');
-  if (open != std::string::npos && close != std::string::npos && open < close)
-    parameter.erase(open, close - open + 1);
-  return parameter == symbol;
-}
-
 bool contains(const model::Transform& transform, const std::string& parameter) {
   for (std::size_t dof = 0; dof < transform.dof_count(); ++dof)
     if (model::any_node(*transform.dof[dof], [&](const model::Expr& node) {
-          return node.op == model::Op::kSymbol && is_of(parameter, node.name);
+          return node.op == model::Op::kSymbol && model::without_station(parameter) == node.name;
         }))
       return true;
   return false;

@@ -57,6 +57,13 @@ std::vector<SetUpOfRow> set_ups_of(const Machine& machine, const std::vector<std
   return list;
 }
 
+std::string without_station(std::string parameter) {
+  if (!parameter.starts_with("table.")) return parameter;
+  const auto open = parameter.find('['), close = parameter.find(']', open);
+  if (open != std::string::npos && close != std::string::npos) parameter.erase(open, close - open + 1);
+  return parameter;
+}
+
 std::vector<Freedom> freedoms_of(Machine& machine) {
   std::vector<Freedom> all;
   for (Static& item : machine.statics) all.emplace_back(ParameterKind::kStatic, item.name, item.hidden);

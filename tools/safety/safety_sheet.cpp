@@ -19,6 +19,7 @@
 #include "tools/model/chain/chain.h"
 #include "tools/model/chain/work_poses.h"
 #include "tools/model/fit_record.h"
+#include "tools/model/parameters.h"
 #include "tools/safety/sources.h"
 #include "tools/text/assurance.h"
 
@@ -204,12 +205,8 @@ class Judge {
     std::vector<std::string> names;  // in the order of the fit
     std::set<std::string> measured;
     for (std::size_t i = 0; i < std::min(record.parameters.size(), record.origins.size()); ++i) {
-      std::string name = record.parameters[i];
+      const std::string name = model::without_station(record.parameters[i]);
       if (name.starts_with("BaseShift") || name.starts_with("ToolShift")) continue;
-      // table.X[50].rY is a value of the column table.X.rY.
-      if (const auto open = name.find('['), close = name.find(']');
-          name.starts_with("table.") && open != std::string::npos && close != std::string::npos)
-        name.erase(open, close - open + 1);
       if (record.origins[i] != fit::origin_name(fit::Origin::kPrior) || was_changed(record, i))
         measured.insert(name);
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);

@@ -59,6 +59,8 @@ TEST(Chain, DerivativesOfEveryObservationAgreeWithDifferences) {
   const Measurement m = support::full_measurement(machine, 40, random);
   const ParameterSet parameters(machine, {"a", "b"});
   ASSERT_EQ(parameters.size(), 5U + 18 + 8 + 6 + 12);
+  EXPECT_EQ(without_station("table.X[100].rY"), "table.X.rY");
+  EXPECT_EQ(without_station("BaseShift[s2].rZ"), "BaseShift[s2].rZ");
   support::expect_derivatives(machine, m, parameters);
 }
 

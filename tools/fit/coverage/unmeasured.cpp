@@ -240,9 +240,7 @@ std::vector<Coefficient> coefficients_of(const model::ParameterSet& parameters) 
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const model::Parameter& p = parameters[i];
     if (model::is_set_up(p.kind)) continue;
-    std::string name = p.name;
-    if (p.kind == model::ParameterKind::kStation)
-      name = name.substr(0, name.find('[')) + name.substr(name.rfind(']') + 1);
+    const std::string name = model::without_station(p.name);
     const auto same =
         std::find_if(list.begin(), list.end(), [&](const Coefficient& one) { return one.name == name; });
     if (same == list.end())
