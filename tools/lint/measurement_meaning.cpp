@@ -13,6 +13,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/sizes/outlying_cells.h"
 #include "tools/lint/dense_points.h"
 #include "tools/model/chain/thing_shape.h"
 #include "tools/text/numbers.h"
@@ -39,7 +40,10 @@ class Meaning {
     look_at_scale();
     look_at_sizes();
     look_at_stations();
-    for (const LintColumn& column : table_.columns) look_for_wild_cells(column);
+    for (const LintColumn& column : table_.columns) {
+      look_for_wild_cells(column);
+      look_for_outliers(column);
+    }
   }
 
  private:
@@ -417,6 +421,36 @@ class Meaning {
                 "this value of {} differs from the other values of its column by {:.3g} times their spread",
                 column.name, (values[row] > high ? values[row] - high : low - values[row]) / width),
             "if this value is a mistake, a lost point or a mark for \"no reading\", leave the cell empty");
+  }
+
+  /// Measured positions that are far from their targets, compared with the rows before and behind: with the
+  /// limits of the import, because the reading of a sheet may be corrected after it.
+  void look_for_outliers(const LintColumn& column) {
+    if (std::find(columns::kPoint.begin(), columns::kPoint.end(), column.name) == columns::kPoint.end())
+      return;
+    const LintColumn* const position = table_.find(
+        std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(column.name[0])))));
+    if (position == nullptr || !names_.is_reading(table_, column)) return;
+    std::vector<double> deviations;
+    std::vector<std::size_t> rows;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      const double deviation = column.value[row] - position->value[row];
+      if (std::isnan(deviation)) continue;
+      deviations.push_back(deviation);
+      rows.push_back(row);
+    }
+    constexpr double kUm = 1e3;  // um in a mm
+    for (const importer::OutlyingValue& one : importer::outlying_values(deviations))
+      findings_.add_of_kind(
+          "outlier " + column.name, LintWeight::kWarning, line(rows[one.index]), column.cell[rows[one.index]],
+          fmt::format(
+              "the deviation {:.4g} um of this reading is far outside the deviations of the rows before "
+              "and behind it ({:.4g} to {:.4g} um)",
+              kUm * deviations[one.index], kUm * one.least, kUm * one.most),
+          one.times > 1 ? fmt::format("1/{} of it agrees with them: is a decimal sign lost?", one.times)
+          : one.times > 0
+              ? "1000 times this deviation agrees with them: was the reading in another unit?"
+              : "if the reading is a mistake, leave the cell empty; if not, the fit uses it as it is");
   }
 
   std::size_t line(std::size_t row) const { return table_.rows[row].line; }

@@ -6,8 +6,8 @@
 
 #include <functional>
 
+#include "tools/import/reading/sheet_import.h"
 #include "tools/import/tables/computed_rows.h"
-#include "tools/import/tables/sheet_import.h"
 #include "tools/import/tables/sheet_table.h"
 #include "tools/import/tables/wide_sheet.h"
 #include "tools/sheet/several_tables.h"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "tests/unit/import/table_reading.h"
-#include "tools/import/tables/sheet_import.h"
+#include "tools/import/reading/sheet_import.h"
 
 namespace vernier::sheet_shape_test {
 
@@ -136,6 +136,94 @@ TEST(SheetShape, ARowOfMoreWordsThanNumbersIsNamed) {
   EXPECT_THAT(read("von;nach;Abstand [mm]\nA;C;141,27\nB;D;141,69\n"),
               HasSubstr("refused: s.csv:2: \"A; C; 141,27\": this row has more words than numbers (number: "
                         "141,27): a row of measured data needs the positions of the axes as numbers"));
+}
+
+/// A table with one deviation per 50 mm, in um.
+std::string along_x(const std::vector<std::string>& cells, const std::string& title = "") {
+  std::string text = title + "X [mm];Abweichung X [um]\n";
+  for (std::size_t i = 0; i < cells.size(); ++i) text += std::to_string(50 * i) + ";" + cells[i] + "\n";
+  return text;
+}
+
+TEST(SheetCells, AColumnInTwoUnitsIsRefused) {
+  const std::string table =
+      along_x({"-0,1", "3,7", "6,9", "8,7", "10,6", "0,0117", "0,0120", "0,0135", "0,0148"});
+  EXPECT_THAT(
+      read(table),
+      testing::StartsWith("refused: s.csv:7: \"Abweichung X [um]\": in this line and in 3 more the "
+                          "deviations have more decimals and are about 13.5 nm, in the other lines about "
+                          "6.9 um: the lines do not have the same unit"));
+  SheetWords words;
+  words.deviations = {"X[um]=Abweichung X [um]"};
+  EXPECT_THAT(read(table, words), HasSubstr("note: \"Abweichung X [um]\", line 7: in this line"));
+  // Small deviations near the zero of the instrument have the decimals of the other ones.
+  EXPECT_THAT(read(along_x({"0,00", "0,01", "0,01", "0,02", "8,71", "9,22", "9,95", "10,31"})),
+              testing::StartsWith("X[mm],x[mm]\n"));
+}
+
+TEST(SheetCells, AnOutlierIsReadWithANote) {
+  const std::string lost =
+      read(along_x({"-0,1", "3,7", "6,9", "8,7", "10,6", "111", "11,7", "12,0", "13,5"}));
+  EXPECT_THAT(lost, HasSubstr("250,250.111\n"));
+  EXPECT_THAT(lost,
+              HasSubstr("note: line 7, \"111\": the deviation 0.111 mm of \"Abweichung X [um]\" is far "
+                        "outside the deviations of the lines before and behind it (8.7 um to 0.012 mm); "
+                        "1/10 of this value agrees with them: is a decimal sign lost?"));
+  EXPECT_THAT(read(along_x({"15,3", "15,9", "16,2", "0,017", "16,8", "17,1", "17,2"})),
+              HasSubstr("1000 times this value agrees with them: has the cell another unit?"));
+  EXPECT_THAT(read(along_x({"1,5", "2,2", "1,2", "2,8", "85,0", "3,5", "2,1", "1,4"})),
+              HasSubstr("(1.2 um to 3.5 um). The value is read"));
+  // A reversal error between two runs is no outlier.
+  EXPECT_THAT(read(along_x({"1,0", "1,2", "1,5", "1,9", "9,9", "9,5", "9,2", "9,0"})),
+              Not(HasSubstr("note")));
+}
+
+TEST(SheetRows, ARowThatSaysThatItIsInvalidIsOmitted) {
+  const auto table = [](const std::string& remark) {
+    return "X [mm];Abweichung X [um];Bemerkung\n0;1;\n50;2;" + remark + "\n50;3;wiederholt\n100;4;\n";
+  };
+  const std::string omitted = read(table("ungültig, Strahl unterbrochen"));
+  EXPECT_THAT(omitted, Not(HasSubstr("50.002")));
+  EXPECT_THAT(omitted,
+              HasSubstr("note: line 3: this row says \"ungültig, Strahl unterbrochen\" and is omitted"));
+  EXPECT_THAT(read(table("invalid (beam)")), HasSubstr("note: line 3: this row says"));
+  EXPECT_THAT(read(table("not valid")), HasSubstr("note: line 3: this row says"));
+  for (const char* const valid : {"gültig", "ungültig?", "nicht ungültig", "not discarded", "valid"})
+    EXPECT_THAT(read(table(valid)), HasSubstr("50.002")) << valid;
+  EXPECT_THAT(read("X [mm];dX [um];Status\n0;1;invalid\n50;2;invalid\n"),
+              HasSubstr("refused: s.csv:2: \"invalid\": each row of the table says that it is invalid"));
+}
+
+TEST(SheetTitle, ATitleOfAnotherAxisIsRefusedWithBothRemedies) {
+  const std::string table = along_x({"1", "2", "3"}, "Achse: Y\n");
+  EXPECT_EQ(
+      read(table),
+      "refused: s.csv:2: \"Achse: Y\": this title states the axis Y, and the headings have the positions of "
+      "X. If the title is right, give --column \"Y=X [mm]\" --deviation \"Y=Abweichung X [um]\"; if the "
+      "headings are right, give --column \"X=X [mm]\"");
+  SheetWords title, headings, still;
+  title.columns = {"Y=X [mm]"}, title.deviations = {"Y=Abweichung X [um]"};
+  headings.columns = {"X=X [mm]"};
+  still.constants = {"Y[mm]=250"};
+  EXPECT_THAT(read(table, title), testing::StartsWith("Y[mm],y[mm]\n0,0.001\n"));
+  EXPECT_THAT(read(table, headings), testing::StartsWith("X[mm],x[mm]\n0,0.001\n"));
+  EXPECT_THAT(read(table, still), testing::StartsWith("X[mm],x[mm],Y[mm]\n0,0.001,250\n"));
+  for (const char* const other : {"Achse X\n", "Achse Y = 250 mm\n", "Y-Achse bei 250\n",
+                                  "parallel zur Y-Achse\n", "Maschine Y, Achse X\n"})
+    EXPECT_THAT(read(along_x({"1", "2", "3"}, other)), testing::StartsWith("X[mm],x[mm]\n")) << other;
+}
+
+TEST(SheetTitle, TheRunOfATitleIsReadWithItsTable) {
+  const std::string tables =
+      "Lauf 1 vorwärts\nX [mm];dX [um]\n0;1\n50;2\n100;3\n\nLauf 2 rückwärts\nX [mm];dX "
+      "[um]\n100;5\n50;4\n0;3\n";
+  SheetWords words;
+  words.table = 2;
+  EXPECT_EQ(read(tables, words),
+            "X[mm],x[mm],dirX,run\n100,100.005,-1,2\n50,50.004,-1,2\n0,0.003,-1,2\nnote: the title \"Lauf 2 "
+            "rückwärts\" states the run 2 and the approach direction - of this table: each row gets both\n");
+  words.constants = {"run=b"};
+  EXPECT_THAT(read(tables, words), testing::StartsWith("X[mm],x[mm],dirX,run\n100,100.005,-1,b\n"));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "tools/import/tables/sheet_import.h"
+#include "tools/import/reading/sheet_import.h"
 #include "tools/sheet/workbook_writer.h"
 #include "tools/text/error.h"
 

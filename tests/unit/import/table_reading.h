@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "tools/import/tables/sheet_import.h"
+#include "tools/import/reading/sheet_import.h"
 #include "tools/text/error.h"
 
 namespace vernier::importer_test {

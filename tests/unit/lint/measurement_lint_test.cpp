@@ -86,6 +86,10 @@ const Case kCases[] = {
     {"AxisInSmallLetters", "X[mm],Y[mm],z[mm],x[mm]\n1,2,3,4\n", "there is z: names have capitals"},
     {"NothingMeasured", "X[mm],Y[mm],Z[mm]\n1,2,3\n", "no measured column"},
     {"WildCell", along_x("9999"), "s.csv:9: warning: \"9999\": this value of x differs "},
+    {"OutlierOfOneReading", along_x("420.070"),
+     "s.csv:9: warning: \"420.070\": the deviation 70 um of this reading is far outside the deviations of "
+     "the "
+     "rows before and behind it (5 to 9 um) -- 1/10 of it agrees with them: is a decimal sign lost?"},
     {"MicronsUnderMillimetres", along_x("", "mm", 1000), "µm under a heading of mm? Write x[um]"},
     {"MillimetresUnderMicrons", along_x("", "um"), "mm under a heading of µm? Write x[mm]"},
     {"CorrectionOfMillimetres", "X[mm],Y[mm],Z[mm],x[mm],correctionX[mm]\n0,0,0,0,12.5\n9,0,0,9,13.5\n",

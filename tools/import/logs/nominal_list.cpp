@@ -9,7 +9,7 @@
 #include <map>
 
 #include "tools/format/columns.h"
-#include "tools/import/tables/sheet_import.h"
+#include "tools/import/reading/sheet_import.h"
 #include "tools/maths/alignment.h"
 #include "tools/model/chain/chain.h"
 #include "tools/sheet/sheet_number.h"

@@ -105,7 +105,47 @@ std::vector<std::size_t> computed_rows_by(const sheet::Sheet& sheet, const sheet
   return rows;
 }
 
+/// True for a remark that says that its row is no valid reading. A negation ("nicht ungültig") and a question
+/// ("ungültig?") are no such remark.
+bool says_invalid(const std::string& cell) {
+  static const WordSet kInvalid = {"ungültig",    "ungueltig", "ungültige",   "ungültiger", "ungültiges",
+                                   "invalid",     "verworfen", "discarded",   "void",       "rejected",
+                                   "fehlmessung", "discard",   "unbrauchbar", "unusable",   "reject"};
+  static const WordSet kValid = {"gültig", "gueltig", "valid"};
+  static const WordSet kNot = {"nicht", "not", "kein", "keine", "keiner", "no", "never", "nie"};
+  if (cell.find('?') != std::string::npos) return false;
+  bool invalid = false, valid = false, negated = false;
+  for (const std::string& word : text::words_in(text::in_small_letters(cell), " \t_-./:;,()[]!=")) {
+    invalid |= kInvalid.contains(word);
+    valid |= kValid.contains(word);
+    negated |= kNot.contains(word);
+  }
+  return negated ? valid && !invalid : invalid;
+}
+
 }  // namespace
+
+void leave_invalid_rows(sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  std::vector<std::pair<std::size_t, std::string>> invalid;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto said = std::find_if(sheet.rows[row].begin(), sheet.rows[row].end(), says_invalid);
+    if (said != sheet.rows[row].end()) invalid.emplace_back(row, *said);
+  }
+  if (invalid.empty()) return;
+  std::size_t rows = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+    rows += sheet::is_blank(sheet.rows[row]) ? 0 : 1;
+  if (invalid.size() >= rows)
+    throw text::InputError(
+        {sheet.file, sheet.line[invalid.front().first]}, invalid.front().second,
+        "each row of the table says that it is invalid: measure again, or delete this column in the file");
+  for (const auto& [row, word] : invalid)
+    sheet.notes.push_back(
+        fmt::format("line {}: this row says \"{}\" and is omitted; if its reading is valid, delete these "
+                    "words in the file",
+                    sheet.line[row], word));
+  for (auto one = invalid.rbegin(); one != invalid.rend(); ++one) sheet::remove_row(sheet, one->first);
+}
 
 bool says_computed_row(const std::string& cell) { return computed_word(cell) != Names::kNoRow; }
 

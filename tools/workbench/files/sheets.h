@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tools/import/tables/sheet_import.h"
+#include "tools/import/reading/sheet_import.h"
 
 namespace vernier::workbench {
 

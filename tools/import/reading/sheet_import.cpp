@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/sheet_import.h"
+#include "tools/import/reading/sheet_import.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,9 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/reading/title_lines.h"
 #include "tools/import/sizes/deviation_sizes.h"
+#include "tools/import/sizes/outlying_cells.h"
 #include "tools/import/sizes/position_sizes.h"
 #include "tools/import/sizes/row_shift.h"
 #include "tools/import/tables/column_guess.h"
@@ -204,6 +206,9 @@ void judge_sizes(SheetReading& reading) {
   for (SizeDoubt& doubt :
        judge_deviation_sizes(reading.sheet, reading.table, sized, reading.wishes.plausible))
     doubts.push_back(std::move(doubt));
+  // A run or a direction in another unit is named as such.
+  for (SizeDoubt& doubt : judge_mixed_units(reading.sheet, reading.table, sized))
+    doubts.push_back(std::move(doubt));
   for (const SizeDoubt& doubt : doubts) {
     SheetColumn& column = reading.columns[doubt.column];
     if (!column.doubt.empty()) continue;
@@ -211,6 +216,7 @@ void judge_sizes(SheetReading& reading) {
     column.doubt_word = doubt.word.empty() ? reading.table.headings[doubt.column].text : doubt.word;
     column.doubt = doubt.text;
   }
+  if (doubts.empty()) note_outlying_cells(reading.sheet, reading.table, sized);
 }
 
 /// Notes the titles that stated the units of deviations and positions.
@@ -263,9 +269,12 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   refuse_transposed(result.sheet, result.table);
   leave_words_below(result.sheet, result.table);
   note_short_rows(result.sheet, result.table);
+  leave_invalid_rows(result.sheet, result.table);
   leave_computed_rows(result.sheet, result.table);
   result.runs = unfold_runs(result.sheet, result.table);
   split_runs(result.sheet, result.table);
+  if (result.wishes.format.table && result.runs == 0)
+    add_run_of_title(result.sheet, result.table, result.wishes.constants);
   for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
   for (const std::string& one : words.deviations) assign_deviation(result.wishes, one);
   for (const std::string& heading : words.fill)
@@ -282,6 +291,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
     settle_thousands(result.sheet, result.table,
                      columns_by_headings(result.sheet, result.table, result.wishes));
   result.columns = columns_of_sheet(result.sheet, result.table, result.wishes);
+  refuse_another_axis(result.sheet, result.table, result.columns, result.wishes);
   fill_down(result);
   settle_directions(result.sheet, result.table, result.columns, result.runs > 0);
   note_units(result);
