@@ -136,12 +136,15 @@ std::vector<Line> lines_of(const std::string& text, std::size_t skip, const std:
   return lines;
 }
 
-/// Number of separators outside quotes.
+/// Number of separators outside quotes. A quote opens at the begin of a cell only: 30°00'03" has seconds.
 std::size_t count_outside_quotes(const std::string& line, char separator) {
   std::size_t count = 0;
   bool quoted = false;
+  char before = separator;
   for (const char c : line) {
-    if (c == '"') quoted = !quoted;
+    const bool begin = std::string_view(";,|\t ").find(before) != std::string_view::npos;
+    if (c == '"' && (quoted || begin || before == '"')) quoted = !quoted;
+    before = c;
     if (!quoted && c == separator) ++count;
   }
   return count;

@@ -226,5 +226,83 @@ TEST(SheetTitle, TheRunOfATitleIsReadWithItsTable) {
   EXPECT_THAT(read(tables, words), testing::StartsWith("X[mm],x[mm],dirX,run\n100,100.005,-1,b\n"));
 }
 
+TEST(SheetRows, RowsOfSeveralAxesAreReadWithThePositionsOfTheOthers) {
+  const std::string table =
+      "Achse;Soll [mm];Ist [mm];Richtung\nX;0;0,001;hin\nX;50;50,002;hin\nY;10;10,003;zurück\n";
+  EXPECT_THAT(read(table),
+              HasSubstr("refused: s.csv:1: \"Achse\": the rows belong to the axes X, Y of this column, "
+                        "and a row needs the position of every axis: state where each axis stood while "
+                        "the others moved, for example --set \"X[mm]=0\" --set \"Y[mm]=0\" (0 is an "
+                        "example)"));
+  SheetWords words;
+  words.constants = {"X[mm]=7", "Y[um]=250", "Z[mm]=3"};
+  EXPECT_EQ(
+      read(table, words),
+      "X[mm],Y[mm],x[mm],y[mm],dirX,dirY,Z[mm]\n0,0.25,0.001,,1,0,3\n50,0.25,50.002,,1,0,3\n"
+      "7,10,,10.003,0,-1,3\nnote: the rows belong to the axes X, Y by the column \"Achse\"; in the rows of "
+      "another axis an axis has the position of --set\n");
+  EXPECT_THAT(read("Achse;Soll [mm];Abw. [um]\nZ;0;1\nZ;5;2\n"),
+              testing::StartsWith("Z[mm],z[mm]\n0,0.001\n5,5.002\n"));
+  // The axis of a run may be in its first row only.
+  EXPECT_THAT(read("Achse;Soll [mm];Ist [mm]\nZ;0;0,001\n;5;5,002\n"),
+              testing::StartsWith("Z[mm],z[mm]\n0,0.001\n5,5.002\n"));
+}
+
+TEST(SheetRows, RunsSideBySideWithTheirPositionsAreReadOneBelowTheOther) {
+  EXPECT_EQ(
+      read("Lauf 1;;;Lauf 2;;\nX [mm];Abw. [um];;X [mm];Abw. [um];\n0;1;;0;3;\n50;2;;50;4;\n"),
+      "X[mm],x[mm],run\n0,0.001,1\n50,50.002,1\n0,0.003,2\n50,50.004,2\nnote: the runs 1, 2 are side by "
+      "side, each with its own positions: their rows are read one run below the other, with a column run\n");
+  const std::string bare =
+      "Lauf 1;;;Lauf 2;;\nPos [mm];Abw. [um];;Pos [mm];Abw. [um];\n0;1;;0;3;\n50;2;;50;4;\n";
+  EXPECT_THAT(read(bare), HasSubstr("such as --column \"X=Pos [mm]\" --deviation \"X=Abw. [um]\";"));
+  SheetWords words;
+  words.columns = {"X=Pos [mm]"}, words.deviations = {"X=Abw. [um]"};
+  EXPECT_THAT(read(bare, words), HasSubstr("50,50.002,1\n0,0.003,2\n50,50.004,2\n"));
+}
+
+TEST(SheetRows, TextsBelowAreOmittedBesideAComputedRow) {
+  EXPECT_EQ(
+      read("Soll X [mm];Ist X [mm]\n0;0,001\n50;50,002\n\n-;-\ngeprüft: Huber;\nMax. Abweichung [µm];18,5\n"),
+      "X[mm],x[mm]\n0,0.001\n50,50.002\nnote: line 6: \"geprüft: Huber\" is a text below the table and is "
+      "omitted\nnote: line 7: the row \"Max. Abweichung [µm]\" is computed from the rows above it and is "
+      "omitted\n");
+}
+
+TEST(SheetCells, DegreesMinutesAndSecondsAreDecimalDegrees) {
+  EXPECT_EQ(
+      read("C soll;C ist\n0°00'00\";-0°00'01\"\n30°30'00\";30°30'03,6\"\n60°00'00\";60°0'0\"\n"),
+      "C[deg],rz[deg]\n0,-0.000277778\n30.5,30.501\n60,60\nnote: cells with degrees, minutes and seconds are "
+      "read as decimal degrees\n");
+}
+
+TEST(SheetWordsOfOtherLanguages, FrenchHeadingsAreRead) {
+  EXPECT_THAT(read("Cote X (mm);Écart X (µm)\n0;1\n50;2\n"), testing::StartsWith("X[mm],x[mm]\n0,0.001\n"));
+}
+
+TEST(SheetRemedy, TheValuesDecideWhichAssignmentIsNamed) {
+  const auto table = [](const std::string& heading, const std::vector<std::string>& cells) {
+    std::string text = heading + "\n";
+    for (std::size_t i = 0; i < cells.size(); ++i) text += std::to_string(50 * i) + ";" + cells[i] + "\n";
+    return text;
+  };
+  EXPECT_THAT(read(table("X [mm];Mittelwert [um]", {"1", "2", "4", "3"})),
+              HasSubstr("such as --deviation \"X=Mittelwert [um]\" (the values are small compared with the "
+                        "positions: deviations);"));
+  EXPECT_THAT(read(table("X [mm];Wert [mm]", {"0,001", "50,002", "100,003", "150,002"})),
+              HasSubstr("such as --column \"x=Wert [mm]\" (the values follow the positions);"));
+  EXPECT_THAT(read(table("X [mm];Schrittweite ist [mm]", {"0,0000", "50,0020", "50,0030", "49,9980"})),
+              HasSubstr("first replace the values of \"Schrittweite ist [mm]\" in the file by their sums"));
+  const std::string opposite =
+      table("X Anzeige [mm];Laser [mm]", {"0,001", "-50,002", "-100,003", "-150,002"});
+  EXPECT_THAT(read(opposite),
+              HasSubstr("such as --column \"X=X Anzeige [mm]\" --column \"x=Laser [mm]\", but first "
+                        "change the sign of \"Laser [mm]\" in the file"));
+  SheetWords words;
+  words.columns = {"X=X Anzeige [mm]", "x=Laser [mm]"};
+  EXPECT_THAT(read(table("X Anzeige [mm];Laser [mm]", {"-0,001", "50,002", "100,003", "150,002"}), words),
+              testing::StartsWith("X[mm],x[mm]\n0,-0.001\n50,50.002\n"));
+}
+
 }  // namespace
 }  // namespace vernier::sheet_shape_test

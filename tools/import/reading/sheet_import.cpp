@@ -8,6 +8,9 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/reading/axis_rows.h"
+#include "tools/import/reading/degree_cells.h"
+#include "tools/import/reading/side_runs.h"
 #include "tools/import/reading/title_lines.h"
 #include "tools/import/sizes/deviation_sizes.h"
 #include "tools/import/sizes/outlying_cells.h"
@@ -264,13 +267,20 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   SheetReading result;
   result.wishes = wishes_of(words, std::move(wishes));
   result.sheet = sheet::read_sheet(bytes, file, result.wishes.format);
+  const std::set<std::size_t> degrees = convert_degree_cells(result.sheet);
   sheet::keep_table(result.sheet, result.wishes.format.table);
   result.table = sheet::parts_of_sheet(result.sheet);
+  state_degrees(result.table, degrees);
   refuse_transposed(result.sheet, result.table);
   leave_words_below(result.sheet, result.table);
   note_short_rows(result.sheet, result.table);
   leave_invalid_rows(result.sheet, result.table);
   leave_computed_rows(result.sheet, result.table);
+  const bool axes_left = std::any_of(words.left.begin(), words.left.end(), [&](const std::string& one) {
+    return find_heading(result.table, one) != std::string::npos;
+  });
+  const bool unfolded_axes = !axes_left && unfold_axes(result.sheet, result.table, result.wishes);
+  stack_runs(result.sheet, result.table);
   result.runs = unfold_runs(result.sheet, result.table);
   split_runs(result.sheet, result.table);
   if (result.wishes.format.table && result.runs == 0)
@@ -296,7 +306,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   settle_directions(result.sheet, result.table, result.columns, result.runs > 0);
   note_units(result);
   note_signs(result);
-  note_sparse_columns(result);
+  if (!unfolded_axes) note_sparse_columns(result);  // the rows of the other axes have no reading
   note_rotating_frame(result);
   judge_sizes(result);
   note_exchanged_headings(result.sheet, result.table, result.columns);

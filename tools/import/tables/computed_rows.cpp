@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/sheet/heading.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
@@ -51,7 +52,8 @@ Names computed_word(const std::string& cell) {
       found = Names::kRow;
     else if (kSometimes.contains(word))
       found = std::max(found, Names::kRowAtTheEnd);
-    else if (word.size() > 1 && !kBeside.contains(word) && !is_count(word))  // a letter alone is an axis
+    else if (word.size() > 1 && !kBeside.contains(word) && !is_count(word) &&
+             !sheet::unit_meant(word))  // a letter alone is an axis
       return Names::kNoRow;
   }
   return standard && deviation ? Names::kRow : found;

@@ -10,6 +10,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/tables/assignments_to_try.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/column_values.h"
 #include "tools/import/tables/sheet_columns.h"
@@ -140,76 +141,6 @@ std::string angle_of(const std::string& axis, const text::Place& place) {
   throw text::InputError(
       place, axis,
       "this column is a deviation in degrees: state its direction, for example --column \"rz[deg]=HEADING\"");
-}
-
-/// Does a heading only count or name its rows?
-bool names_counting(const sheet::Heading& heading) {
-  const std::vector<std::string> words = heading_words(heading.name);
-  return !words.empty() && std::all_of(words.begin(), words.end(), [](const std::string& word) {
-    return says_counting(text::in_small_letters(word));
-  });
-}
-
-/// Assignments that read a table in which nothing was recognised as measured, with its own headings.
-std::string assignments_to_try(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
-                               const Guess& guess) {
-  const auto axis = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& column) {
-    return column.use == SheetColumn::Use::kColumn && guess.is_axis(column.name);
-  });
-  std::string position, reading, unit;
-  bool actual = false, correction = false;
-  const auto has = [&](Guess::Bare kind) {
-    return std::any_of(table.headings.begin(), table.headings.end(),
-                       [&](const sheet::Heading& one) { return Guess::bare(one.name) == kind; });
-  };
-  const bool shown = !has(Guess::Bare::kTarget) && has(Guess::Bare::kActual);
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    const SheetColumn& column = columns[k];
-    if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name) ||
-        guess.is_motion(column.name) || is_sense(column.name) || is_known_name(column.name) ||
-        names_counting(table.headings[k]))
-      continue;
-    Guess::Bare bare = Guess::bare(table.headings[k].name);
-    if (bare == Guess::Bare::kDisplay && shown) bare = Guess::Bare::kTarget;
-    if (bare == Guess::Bare::kTarget && axis == columns.end() && position.empty()) {
-      position =
-          fmt::format("--column \"{}={}\" ", column.unit.empty() ? "X[mm]" : "X", table.headings[k].text);
-    } else if (reading.empty() || (bare == Guess::Bare::kActual && !actual)) {
-      reading = table.headings[k].text;
-      unit = column.unit;
-      actual = bare == Guess::Bare::kActual;
-      correction = names_correction(table.headings[k]);
-    }
-  }
-  const std::string name = axis == columns.end() ? "X" : axis->name;
-  const auto open = std::find_if(columns.begin(), columns.end(), [](const SheetColumn& column) {
-    return column.use == SheetColumn::Use::kLeft && column.name.empty() &&
-           column.why.find("the axis of this deviation is not known") == 0;
-  });
-  if (open != columns.end() && !actual)
-    return fmt::format("{}--deviation \"{}{}={}\"{}{}", position, name, open->unit.empty() ? "[um]" : "",
-                       table.headings[static_cast<std::size_t>(open - columns.begin())].text,
-                       position.empty() && axis == columns.end() ? " --set \"X[mm]=0\"" : "",
-                       open->unit.empty() ? "; [um] is an example: state the unit of the values" : "");
-  // A column that was left out has the options that read it.
-  if (reading.empty())
-    for (const SheetColumn& column : columns)
-      if (const auto at = column.why.find("--"); column.use == SheetColumn::Use::kLeft &&
-                                                 at != std::string::npos &&
-                                                 !column.why.starts_with("column "))
-        return column.why.substr(at);
-  if (reading.empty()) reading = "HEADING";
-  const std::string which = unit.empty() ? "; [mm] and [um] are examples: state the unit of the values" : "";
-  if (correction)
-    return fmt::format("{}--deviation \"{}{}={}\" (a correction is nominal - actual: its sign is reversed){}",
-                       position, name, unit.empty() ? "[um]" : "", reading, which);
-  return fmt::format(
-      "{}--column \"{}{}={}\" for a measured position, or {}--deviation \"{}{}={}\" for a deviation{}",
-      position, reading_of(name).value_or("x"),
-      unit.empty() ? (reading_of(name) == text::in_small_letters(name) ? "[mm]" : "[deg]") : "", reading,
-      position, name,
-      unit.empty() ? (reading_of(name) == text::in_small_letters(name) ? "[um]" : "[arcsec]") : "", reading,
-      which);
 }
 
 /// A row with a reading needs the position of every axis that has a column.
@@ -407,7 +338,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
         heading, "",
         fmt::format("no column of the table is a reading ({}, or a deviation of an axis): assign one, such "
                     "as {}; --preview shows the meaning of each column",
-                    format::reading_column_names(), assignments_to_try(table, columns, guess)));
+                    format::reading_column_names(), assignments_to_try(sheet, table, columns, guess)));
   for (std::size_t k = 0; k < columns.size(); ++k)
     check_quantity(columns[k], guess, table.headings[k].text, heading);
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {

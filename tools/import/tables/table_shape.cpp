@@ -88,22 +88,23 @@ void leave_words_below(sheet::Sheet& sheet, const sheet::SheetTable& table) {
     return std::count_if(cell.begin(), cell.end(), [](unsigned char c) { return std::isalpha(c) != 0; }) >= 3;
   };
   std::vector<std::string> notes;
-  while (sheet.rows.size() > table.first_data + 1) {
-    const std::vector<std::string>& cells = sheet.rows.back();
-    if (!sheet::is_blank(cells)) {
+  for (std::size_t row = sheet.rows.size(); row-- > table.first_data + 1;) {
+    const std::vector<std::string>& cells = sheet.rows[row];
+    // A row that the spreadsheet computed may be below or above a text: leave_computed_rows.
+    if (std::any_of(cells.begin(), cells.end(), says_computed_row)) continue;
+    if (!std::all_of(cells.begin(), cells.end(), is_missing)) {
       if (std::any_of(cells.begin(), cells.end(), is_number) ||
           std::none_of(cells.begin(), cells.end(), is_text) ||
-          std::any_of(cells.begin(), cells.end(), says_computed_row) ||
           std::any_of(cells.begin(), cells.end(), sheet::begins_with_error_value))
         break;
       std::string words;
       for (const std::string& cell : cells)
         if (!cell.empty()) words += (words.empty() ? "" : " ") + cell;
       notes.push_back(
-          fmt::format("line {}: \"{}\" is a text below the table and is omitted", sheet.line.back(), words));
-      sheet.remarks.push_back({sheet.line.back(), words});
+          fmt::format("line {}: \"{}\" is a text below the table and is omitted", sheet.line[row], words));
+      sheet.remarks.push_back({sheet.line[row], words});
     }
-    sheet::remove_row(sheet, sheet.rows.size() - 1);
+    sheet::remove_row(sheet, row);
   }
   sheet.notes.insert(sheet.notes.end(), notes.rbegin(), notes.rend());
 }

@@ -17,7 +17,7 @@ const WordSet kTargetWords = {
     "position",     "pos",      "set",          "ziel",         "achse",    "axis",         "machine",
     "maschine",     "nom",      "sollposition", "zielposition", "nennmaß",  "nennmass",     "nennwert",
     "nennposition", "sollmaß",  "sollmass",     "kommandiert",  "befohlen", "programmiert", "programmed",
-    "demand",       "setpoint", "vorgabe",      "vorgabewert"};
+    "demand",       "setpoint", "vorgabe",      "vorgabewert",  "cote",     "consigne"};
 const WordSet kMeasuredWords = {
     "ist",  "istwert",   "istposition", "istmaß",       "istmass",  "measured",   "actual", "act",
     "meas", "mess",      "messwert",    "gemessen",     "reading",  "tracker",    "laser",  "read",
@@ -28,6 +28,8 @@ const WordSet kDisplayWords = {"anzeige",   "angezeigt", "angezeigte",     "anze
 const WordSet kDeviationWords = {
     "abweichung", "abweichungen", "deviation", "deviations", "dev", "error", "errors", "fehler", "err",
     "delta", "diff", "abw", "differenz", "difference", "ecart",
+    // Of an accented capital the small letter is not known here.
+    "\u00e9cart", "\u00c9cart", "\u00e9carts", "\u00c9carts",
     // Greek letters, and the sign of the increment; the small letters of words are those of ASCII.
     "\u0394", "\u03b4", "\u2206"};
 const WordSet kCorrectionWords = {"korr", "corr", "comp", "komp"};

@@ -447,7 +447,7 @@ bool mentions_sign(std::string_view text) {
 SignSaid sign_of_size(std::string_view text) {
   static const WordSet kShort = {"kurz", "kürzer", "short", "shorter", "undershoot"},
                        kLong = {"lang", "länger", "weit", "long", "longer", "far", "overshoot"},
-                       kSmall = {"klein", "small"}, kLarge = {"groß", "gross", "grosz", "large", "big"},
+                       kCompared = {"klein", "small"}, kLarge = {"groß", "gross", "grosz", "large", "big"},
                        kMeasures = {"maß",    "mass",   "weg",       "verfahrweg", "strecke",
                                     "travel", "istweg", "dimension", "distance",   "position"};
   const auto is_too = [](const std::string& word) { return word == "zu" || word == "too"; };
@@ -465,8 +465,8 @@ SignSaid sign_of_size(std::string_view text) {
   for (std::size_t k = 0; k < words.size(); ++k) {
     if (const int sign = sign_of_word(words[k]); sign != 0) before = sign;
     const bool too = k > 0 && is_too(words[k - 1]);
-    const bool small = kShort.contains(words[k]) || (too && kSmall.contains(words[k]));
-    const bool bare = too && (kSmall.contains(words[k]) || kLarge.contains(words[k]));
+    const bool small = kShort.contains(words[k]) || (too && kCompared.contains(words[k]));
+    const bool bare = too && (kCompared.contains(words[k]) || kLarge.contains(words[k]));
     if (!small && !kLong.contains(words[k]) && !bare) continue;
     // "zu kurz = +" states the sign behind the size, "positiv, wenn zu kurz" before it.
     int sign = k + 2 < words.size() && (says_meaning(words[k + 1]) || is_too(words[k + 1]))

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include "tools/import/tables/sheet_wishes.h"
+#include "tools/sheet/heading.h"
+#include "tools/sheet/sheet.h"
+
+namespace vernier::importer {
+
+/// Converts a table whose rows belong to different axes ("Achse | Soll | Ist", rows X, Y, Z) to a table with
+/// own columns for each axis: "Soll X | Ist X | Soll Y | …". The constants of these axes in `wishes` become
+/// the positions of the axes in the rows of the other axes, and are removed from `wishes`. Returns false if
+/// the sheet has another form and is not changed. Throws InputError if several axes move and the position of
+/// one of them in the other rows is not stated.
+bool unfold_axes(sheet::Sheet& sheet, sheet::SheetTable& table, SheetWishes& wishes);
+
+}  // namespace vernier::importer

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/tables/assignments_to_try.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "tools/format/units.h"
+#include "tools/import/words/sheet_words.h"
+#include "tools/maths/median.h"
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+/// What the values of a column are, beside the positions of an axis.
+enum class Values { kUnclear, kPositions, kDeviations, kOpposite, kSteps };
+
+/// The axis of a heading with a word for the position that the control shows: "X Anzeige".
+std::string axis_shown(const sheet::Heading& heading, const Guess& guess) {
+  std::string axis;
+  bool display = false;
+  for (const std::string& word : heading_words(heading.name)) {
+    display |= says_display(text::in_small_letters(word));
+    if (guess.is_axis(word)) axis = word;
+  }
+  return display ? axis : "";
+}
+
+/// Compares the values of a column with the positions of an axis, row by row. Without units on both sides the
+/// result is kUnclear.
+Values values_beside(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                     const std::vector<SheetColumn>& columns, std::size_t position, std::size_t reading) {
+  const auto from = format::find_unit(columns[position].unit), to = format::find_unit(columns[reading].unit);
+  if (!from || !to || columns[position].unit.empty() || columns[reading].unit.empty() ||
+      from->dimension != to->dimension)
+    return Values::kUnclear;
+  std::vector<double> at, value, size, apart, sum, step;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto a = sheet::number_at(sheet, row, position), b = sheet::number_at(sheet, row, reading);
+    if (!a || !b) continue;
+    if (!at.empty()) step.push_back(std::abs(*b * to->factor - (*a * from->factor - at.back())));
+    at.push_back(*a * from->factor);
+    value.push_back(*b * to->factor);
+    size.push_back(std::abs(value.back()));
+    apart.push_back(std::abs(value.back() - at.back()));
+    sum.push_back(std::abs(value.back() + at.back()));
+  }
+  constexpr std::size_t kEnough = 4;  // fewer rows show no pattern
+  if (at.size() < kEnough) return Values::kUnclear;
+  const auto [least, most] = std::minmax_element(at.begin(), at.end());
+  const double travel = *most - *least;
+  // No machine has errors of a twentieth of its travel (kImplausibleShare in deviation_sizes.cpp).
+  constexpr double kShare = 0.05;
+  if (!(travel > 0)) return Values::kUnclear;
+  if (*std::max_element(size.begin(), size.end()) < kShare * travel) return Values::kDeviations;
+  if (maths::median(apart) < kShare * travel) return Values::kPositions;
+  if (maths::median(sum) < kShare * travel) return Values::kOpposite;
+  // The steps are a part of the travel: they agree within a twentieth of themselves.
+  if (maths::median(step) < kShare * maths::median(size)) return Values::kSteps;
+  return Values::kUnclear;
+}
+
+/// Does a heading only count or name its rows?
+bool names_counting(const sheet::Heading& heading) {
+  const std::vector<std::string> words = heading_words(heading.name);
+  return !words.empty() && std::all_of(words.begin(), words.end(), [](const std::string& word) {
+    return says_counting(text::in_small_letters(word));
+  });
+}
+
+}  // namespace
+
+std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                               const std::vector<SheetColumn>& columns, const Guess& guess) {
+  const auto axis = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& column) {
+    return column.use == SheetColumn::Use::kColumn && guess.is_axis(column.name);
+  });
+  std::string position, reading, unit;
+  std::optional<std::size_t> at_position, at_reading;
+  if (axis != columns.end()) at_position = static_cast<std::size_t>(axis - columns.begin());
+  std::string name = axis == columns.end() ? "X" : axis->name;
+  bool actual = false, correction = false;
+  const auto has = [&](Guess::Bare kind) {
+    return std::any_of(table.headings.begin(), table.headings.end(),
+                       [&](const sheet::Heading& one) { return Guess::bare(one.name) == kind; });
+  };
+  const bool shown = !has(Guess::Bare::kTarget) && has(Guess::Bare::kActual);
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name) ||
+        guess.is_motion(column.name) || is_sense(column.name) || is_known_name(column.name) ||
+        names_counting(table.headings[k]))
+      continue;
+    Guess::Bare bare = Guess::bare(table.headings[k].name);
+    if (bare == Guess::Bare::kDisplay && shown) bare = Guess::Bare::kTarget;
+    const std::string shown_axis = axis_shown(table.headings[k], guess);
+    if (!shown_axis.empty() && shown && axis == columns.end() && position.empty()) {
+      name = shown_axis;
+      at_position = k;
+      position = fmt::format("--column \"{}{}={}\" ", name, column.unit.empty() ? "[mm]" : "",
+                             table.headings[k].text);
+      continue;
+    }
+    if (bare == Guess::Bare::kTarget && axis == columns.end() && position.empty()) {
+      at_position = k;
+      position =
+          fmt::format("--column \"{}={}\" ", column.unit.empty() ? "X[mm]" : "X", table.headings[k].text);
+    } else if (reading.empty() || (bare == Guess::Bare::kActual && !actual)) {
+      at_reading = k;
+      reading = table.headings[k].text;
+      unit = column.unit;
+      actual = bare == Guess::Bare::kActual;
+      correction = names_correction(table.headings[k]);
+    }
+  }
+  const auto open = std::find_if(columns.begin(), columns.end(), [](const SheetColumn& column) {
+    return column.use == SheetColumn::Use::kLeft && column.name.empty() &&
+           column.why.find("the axis of this deviation is not known") == 0;
+  });
+  if (open != columns.end() && !actual)
+    return fmt::format("{}--deviation \"{}{}={}\"{}{}", position, name, open->unit.empty() ? "[um]" : "",
+                       table.headings[static_cast<std::size_t>(open - columns.begin())].text,
+                       position.empty() && axis == columns.end() ? " --set \"X[mm]=0\"" : "",
+                       open->unit.empty() ? "; [um] is an example: state the unit of the values" : "");
+  // A column that was left out has the options that read it.
+  if (reading.empty())
+    for (const SheetColumn& column : columns)
+      if (const auto at = column.why.find("--"); column.use == SheetColumn::Use::kLeft &&
+                                                 at != std::string::npos &&
+                                                 !column.why.starts_with("column "))
+        return column.why.substr(at);
+  if (reading.empty()) reading = "HEADING";
+  const std::string which = unit.empty() ? "; [mm] and [um] are examples: state the unit of the values" : "";
+  if (correction)
+    return fmt::format("{}--deviation \"{}{}={}\" (a correction is nominal - actual: its sign is reversed){}",
+                       position, name, unit.empty() ? "[um]" : "", reading, which);
+  const std::string as_position = fmt::format(
+      "{}--column \"{}{}={}\"", position, reading_of(name).value_or("x"),
+      unit.empty() ? (reading_of(name) == text::in_small_letters(name) ? "[mm]" : "[deg]") : "", reading);
+  const std::string as_deviation = fmt::format(
+      "{}--deviation \"{}{}={}\"", position, name,
+      unit.empty() ? (reading_of(name) == text::in_small_letters(name) ? "[um]" : "[arcsec]") : "", reading);
+  const Values values = at_position && at_reading && at_position != at_reading
+                            ? values_beside(sheet, table, columns, *at_position, *at_reading)
+                            : Values::kUnclear;
+  switch (values) {
+    case Values::kDeviations:
+      return fmt::format("{} (the values are small compared with the positions: deviations)", as_deviation);
+    case Values::kPositions:
+      return fmt::format("{} (the values follow the positions)", as_position);
+    case Values::kOpposite:
+      return fmt::format(
+          "{}, but first change the sign of \"{}\" in the file: its values are the positions with "
+          "the opposite sign",
+          as_position, reading);
+    case Values::kSteps:
+      return fmt::format(
+          "{}, but first replace the values of \"{}\" in the file by their sums from the first row "
+          "to each row: the values are the steps from row to row",
+          as_position, reading);
+    case Values::kUnclear:
+      break;
+  }
+  return fmt::format("{} for a measured position, or {} for a deviation{}", as_position, as_deviation, which);
+}
+
+}  // namespace vernier::importer
