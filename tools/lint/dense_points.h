@@ -19,10 +19,13 @@ struct DensePoints {
 
 /// Finds tables whose stations are more than three times as far apart as the points of a survey. The curve
 /// between two stations then remains in the residual, where it can look like a cyclic error. Only rows count
-/// in which one axis moved alone: poses all over the volume have other positions in each row. `positions`:
-/// positions of each axis of the machine in each row; an axis without a column has an empty list.
+/// in which one axis moved alone: poses all over the volume have other positions in each row. The proposed
+/// stations have at least three readings of these rows for each station and each fitted column of the table;
+/// without such stations there is no proposal. `positions`: positions of each axis of the machine in each
+/// row; an axis without a column has an empty list. `readings`: number of readings of each row.
 std::vector<DensePoints> dense_points(const model::Machine& machine,
-                                      const std::vector<std::vector<double>>& positions);
+                                      const std::vector<std::vector<double>>& positions,
+                                      const std::vector<std::size_t>& readings);
 
 /// "X: 41 positions 25 mm apart, stations 200 mm apart", and what to do.
 std::string dense_points_text(const DensePoints& points);

@@ -300,7 +300,13 @@ class Meaning {
       const LintColumn* const column = table_.find(axis.name);
       positions.push_back(column == nullptr ? std::vector<double>() : column->value);
     }
-    for (const DensePoints& points : dense_points(*machine_, positions))
+    std::vector<std::size_t> readings(table_.rows.size());
+    for (const LintColumn& column : table_.columns) {
+      if (column.label || !names_.is_reading(table_, column)) continue;
+      for (std::size_t row = 0; row < readings.size(); ++row)
+        readings[row] += std::isnan(column.value[row]) ? 0 : 1;
+    }
+    for (const DensePoints& points : dense_points(*machine_, positions, readings))
       findings_.remark(table_.header_line, points.axis, dense_points_text(points),
                        dense_points_remedy(points));
   }

@@ -248,9 +248,31 @@ TEST(MeasurementLintOf, PointsMuchDenserThanTheStationsAreNamed) {
   EXPECT_NE(lint(25, true).find("X: 25 positions about 25 mm apart, and the table has stations 200 mm apart"),
             std::string::npos)
       << lint(25, true);
-  EXPECT_NE(lint(25, true).find("--stations X=25"), std::string::npos);
+  EXPECT_NE(lint(25, true).find("--stations X=100"), std::string::npos) << "25 readings are 3 for 8 stations";
   EXPECT_EQ(lint(100, true).find("positions about"), std::string::npos) << "few points show no curve";
   EXPECT_EQ(lint(25, false).find("positions about"), std::string::npos) << "poses of both axes are no line";
+}
+
+TEST(MeasurementLintOf, StationsAreProposedOnlyWithThreeReadingsForEachOfThem) {
+  const auto lint = [](const std::string& fit, int runs, const std::string& reading) {
+    const Machine with_table = parse_machine(
+        R"xml(<machine><variables><machineaxes><X min="0" max="600"/></machineaxes><comptables><table axis="X" fit=")xml" +
+            fit +
+            R"xml("><station loc="0"/><station loc="200"/><station loc="400"/><station loc="600"/></table></comptables>
+        </variables><transforms><sixdof X="X+lXx" Y="lXy" Z="lXz"/></transforms></machine>)xml",
+        "m.xml");
+    std::string rows = "X[mm]," + reading + ",u[um]\n", all;
+    for (int run = 0; run < runs; ++run)
+      for (int x = 0; x <= 600; x += 25)
+        rows += fmt::format("{0},{0}.00{1}{2},1\n", x, run, reading == "x[mm]" ? "" : ",0.001,0.002");
+    for (const LintFinding& finding : lint_measurement(rows, "s.csv", &with_table))
+      all += in_one_line(finding) + "\n";
+    return all;
+  };
+  EXPECT_NE(lint("X", 4, "x[mm]").find("--stations X=25"), std::string::npos) << lint("X", 4, "x[mm]");
+  EXPECT_EQ(lint("X Y Z", 2, "x[mm]").find("--stations"), std::string::npos)
+      << "50 readings of one coordinate for three columns";
+  EXPECT_NE(lint("X Y Z", 4, "x[mm],y[mm],z[mm]").find("--stations X=25"), std::string::npos);
 }
 
 TEST(ImportCommand, IsGivenForSpreadsheetsOnly) {

@@ -183,6 +183,13 @@ std::vector<std::vector<double>> positions_of(const model::Measurement& m) {
   return positions;
 }
 
+/// Number of readings of each row.
+std::vector<std::size_t> readings_of(const model::Measurement& m) {
+  std::vector<std::size_t> readings(m.rows());
+  for (const model::Observation& one : m.observations) ++readings[one.row];
+  return readings;
+}
+
 void run_fit(const FitArguments& arguments) {
   const auto [text, machine, m] = read_survey(
       {arguments.machine, arguments.images, arguments.measurements, {}}, [&](const model::Machine& read) {
@@ -215,7 +222,7 @@ void run_fit(const FitArguments& arguments) {
   for (const fit::OtherSetUp& one : fit::files_set_up_elsewhere(result.machine, m))
     fmt::print(stderr, "note: {}; to fit this set-up, give at least three rows of the file the role fit\n",
                one.sentence());
-  for (const lint::DensePoints& points : lint::dense_points(result.machine, positions_of(m)))
+  for (const lint::DensePoints& points : lint::dense_points(result.machine, positions_of(m), readings_of(m)))
     fmt::print(stderr, "note: {}: {}\n", lint::dense_points_text(points), lint::dense_points_remedy(points));
   print_result(human_stream(arguments.json), result, m);
   results::print_domains(human_stream(arguments.json), json["domains"]);
