@@ -257,6 +257,29 @@ std::string unread_in_words(const FitResult& result, const model::Measurement& m
                      fmt::join(names, " or "));
 }
 
+/// The axes with one position in all rows of the fit: how the other errors change along them was not
+/// measured.
+void add_axes_that_stood(const model::Machine& machine, const model::FitRecord& record,
+                         std::vector<model::FitRecord::Finding>& list) {
+  std::string positions;
+  std::size_t stood = 0, moved = 0;
+  for (const model::FitRecord::Range& range : record.measured) {
+    if (!machine.find_axis(range.name)) continue;
+    if (range.max > range.min) {
+      ++moved;
+      continue;
+    }
+    ++stood;
+    positions += fmt::format("{}{} at {:g}", positions.empty() ? "" : ", ", range.name, range.min);
+  }
+  if (stood == 0 || moved == 0) return;
+  list.push_back(
+      {kStoodStill, static_cast<double>(stood),
+       fmt::format("{} stood still in all rows ({}): the correction of the other axes is known at this "
+                   "position only.",
+                   stood == 1 ? "One axis" : fmt::format("{} axes", stood), positions)});
+}
+
 }  // namespace
 
 bool repeats_in_other_runs(const model::Measurement& m) {
@@ -305,6 +328,7 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
              "{} was taken as flat, and all rows touch it: a bow of it counts as an error of the axes, at "
              "the position of the axes and not where the probe touched.",
              names)});
+  add_axes_that_stood(result.machine, record, list);
   const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],
                          1e3 * record.discrepancy_mm[2]);
   if (lack_um.maxCoeff() > 0) {

@@ -29,13 +29,17 @@ Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurem
 /// reading has a known length; value: the plausible share), `taken-as-exact` (a length that gives the machine
 /// its size, and whose own error no reading shows; value 0), `far-from-nominal` (a fit of touches gave
 /// another machine than that of the file), `flatness-assumed` (all rows touch planes of unknown position,
-/// some of them with a probe beside the tool point; value 0). `record`: the fit record, complete except for
+/// some of them with a probe beside the tool point; value 0), `stood-still` (number of axes that had one
+/// position in all fit rows, while others moved). `record`: the fit record, complete except for
 /// the findings.
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);
 
 /// Code of the finding that a bow of the touched plane counts as an error of the axes.
 inline constexpr const char* kFlatnessAssumed = "flatness-assumed";
+
+/// Code of the finding that an axis had one position in all fit rows.
+inline constexpr const char* kStoodStill = "stood-still";
 
 /// Without a column setup each run is a set-up of its own, and then equal targets of two runs are no repeats.
 /// True if the noise of the readings is unknown for this reason alone.

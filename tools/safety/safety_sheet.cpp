@@ -232,6 +232,17 @@ class Judge {
     return std::sqrt(off.squaredNorm() / static_cast<double>(off.cols()));
   }
 
+  /// True if the deviation of the tool point depends on the position of this axis.
+  bool changes_along(std::size_t axis, const std::array<double, 2>& range) const {
+    constexpr double kNothing = 1e-6;  // mm: a nanometre, below every instrument
+    for (const double at : {range[0], (range[0] + range[1]) / 2, range[1]}) {
+      model::States states = poses_.states;
+      states.axis[axis].setConstant(at);
+      if ((model::deviation(machine_, states) - deviation_).cwiseAbs().maxCoeff() > kNothing) return true;
+    }
+    return false;
+  }
+
   void judge_ranges() {
     if (!machine_.fitted) {
       add(SafetyRule::kMeasuredRange, std::nullopt, "");
@@ -252,8 +263,18 @@ class Judge {
       if (const auto axis = machine_.find_axis(measured.name)) {
         const auto range = model::work_range(machine_, *axis);
         if (!range || !acts(machine_, {model::SymbolKind::kAxis, *axis})) continue;
-        axes.push_back({overhang(measured, (*range)[0], (*range)[1]),
-                        region("axis", measured, (*range)[0], (*range)[1])});
+        const bool stood = !(measured.max > measured.min);
+        // Without a correction that depends on this axis no table and no term is used outside its range. The
+        // fit reports the axis (finding stood-still).
+        if (stood && !changes_along(*axis, *range)) continue;
+        axes.push_back(
+            {overhang(measured, (*range)[0], (*range)[1]),
+             region("axis", measured, (*range)[0], (*range)[1]) +
+                 (stood ? fmt::format(" (the correction depends on {0}, and {0} stood still: measure at "
+                                      "other positions of {0}, or fit with --hold for the errors that "
+                                      "depend on it)",
+                                      measured.name)
+                        : "")});
       } else if (const auto input = machine_.find_input(measured.name)) {
         const model::Input& item = machine_.inputs[*input];
         if (!item.min || !item.max || !acts(machine_, {model::SymbolKind::kInput, *input})) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -122,6 +123,41 @@ TEST(SafetySheet, JudgesWhereItWorksAgainstWhereItWasMeasured) {
             "axis Y, measured from ");
   fitted.volume = {{1, 0, 200}};  // <volume>: it works where it was measured
   EXPECT_TRUE(safety_sheet(fitted).ok()) << safety_sheet(fitted).refusal();
+}
+
+TEST(SafetySheet, AnAxisThatStoodStillCountsOnlyIfACorrectionDependsOnIt) {
+  // GIVEN a fitted scale error of X, and rows in which Z stood still
+  const std::string statics =
+      "<alpha value=\"0\" nominal=\"0\" unit=\"rad\"/><gamma value=\"0\" nominal=\"0\" unit=\"rad\" "
+      "Hide=\"true\"/>";
+  Machine truth = small_machine(statics, "", "X-alpha*Y+gamma*Z");
+  const Machine model = truth;
+  truth.statics[0].value = 5e-5;
+  Measurement m = survey(truth, model, 1e-3);
+  m.states.axis[2].setConstant(-100);
+  const Eigen::VectorXd exact = predict(truth, m);
+  for (std::size_t i = 0; i < m.observations.size(); ++i)
+    m.observations[i].value = exact[static_cast<Eigen::Index>(i)];
+  Machine fitted = fit::fit(model, m).machine;
+  // WHEN no correction depends on Z, the rule is met, and the fit names the axis
+  EXPECT_TRUE(finding(safety_sheet(fitted), SafetyRule::kMeasuredRange).ok)
+      << finding(safety_sheet(fitted), SafetyRule::kMeasuredRange).culprit;
+  const auto& found = fitted.fitted->findings;
+  const auto stood = std::find_if(found.begin(), found.end(),
+                                  [](const FitRecord::Finding& one) { return one.code == "stood-still"; });
+  ASSERT_NE(stood, found.end());
+  EXPECT_EQ(stood->text,
+            "One axis stood still in all rows (Z at -100): the correction of the other axes is known at this "
+            "position "
+            "only.");
+  // THEN a squareness of Z makes the correction depend on Z, and the rule refuses with a remedy
+  fitted.statics[1].value = 1e-5;
+  const SafetyFinding& refused = finding(safety_sheet(fitted), SafetyRule::kMeasuredRange);
+  EXPECT_FALSE(refused.ok);
+  EXPECT_NE(
+      refused.culprit.find("the correction depends on Z, and Z stood still: measure at other positions of Z"),
+      std::string::npos)
+      << refused.culprit;
 }
 
 TEST(SafetySheet, NamesEveryAxisThatWorksOutsideItsMeasuredRange) {
