@@ -95,6 +95,13 @@ void print_next_step(std::FILE* out, const diagnose::Diagnosis& d) {
         "next: the option --machine-out NEW writes the machine file with the {} of the stepwise model, "
         "fitted; the rest of the residual has no name in the catalogue\n",
         d.ladder.size() == 2 ? "effect" : fmt::format("{} effects", d.ladder.size() - 1));
+  else if (const auto best = std::max_element(d.candidates.begin(), d.candidates.end(),
+                                              [](const auto& a, const auto& b) { return a.score < b.score; });
+           !(best->score > 0))
+    fmt::print(
+        out,
+        "next: no candidate has evidence (no score above 0): measure again, or find the cause outside the "
+        "catalogue; adding a candidate is no explanation\n");
   else if (const std::string& add = d.candidates.front().add; !add.empty())
     fmt::print(
         out,
