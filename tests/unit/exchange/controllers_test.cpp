@@ -316,6 +316,25 @@ TEST(ControllerTables, RefuseMorePointsThanTheControllerKeeps) {
   EXPECT_THROW(export_of(Controller::kSiemens, kMill, 0.5), text::InputError);
 }
 
+/// The travel of X is the direction of the part: its slope is a rotation, a squareness of Y is none.
+TEST(ControllerTables, SayWhichRotationOfTheWholePartTheyHold) {
+  const auto errors_of = [](const char* x, const char* y) {
+    const std::string text =
+        std::string(
+            R"xml(<machine name="turned"><variables><static><a value="2e-5" nominal="0" unit="rad"/></static>
+    <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes></variables>
+    <transforms branch="tool"><sixdof n="1" X=")xml") +
+        x + "\" Y=\"" + y + "\" Z=\"Z\"/></transforms></machine>";
+    const Case one = export_of(Controller::kHeidenhain, text.c_str());
+    return controller_errors(one.machine, one.axes, one.tables, one.at);
+  };
+  const ControllerErrors turned = errors_of("X-a*Y", "Y+a*X");
+  EXPECT_NEAR(std::abs(turned.rotation_urad[2]), 20, 0.5);  // the tables hold 1 um between their points
+  EXPECT_NEAR(turned.rotation_um, 2e-5 * std::hypot(300, 200) * 1000, 0.3);
+  const ControllerErrors square = errors_of("X-a*Y", "Y");
+  EXPECT_LT(square.rotation_um, 0.3) << "the tolerance of 1 um between the points";
+}
+
 /// 257 points of 2000 mm are too few for a period of 10 mm.
 TEST(ControllerTables, DoNotIncreaseAnErrorThatTheyCannotHold) {
   const char* const cyclic = R"xml(<machine name="cyclic"><variables><static>

@@ -84,7 +84,9 @@ Json result_json(const exchange::ControllerErrors& errors, const exchange::Contr
             {"after_positive_um", three_json(errors.after_positive_um)},
             {"after_negative_um", three_json(errors.after_negative_um)},
             {"rms_before_um", errors.rms_before_um},
-            {"rms_after_um", errors.rms_after_um}}}};
+            {"rms_after_um", errors.rms_after_um},
+            {"rotation_um", errors.rotation_um},
+            {"rotation_urad", three_json(errors.rotation_urad)}}}};
 }
 
 void print_tables(const ExchangeArguments& common, const exchange::ControllerTables& tables,
@@ -101,6 +103,18 @@ void print_tables(const ExchangeArguments& common, const exchange::ControllerTab
     if (errors.after_um[i] > errors.before_um[i] + exchange::kNothing_um)
       fmt::print(out, "note: the files increase the largest error along {} from {:.3g} to {:.3g} um\n",
                  exchange::kLetters[i], errors.before_um[i], errors.after_um[i]);
+}
+
+/// Says that the files correct a rotation of the whole part: it may be the alignment of the instrument.
+void print_rotation(const ExchangeArguments& common, const exchange::ControllerErrors& errors) {
+  constexpr double kVisible_um = 0.1;  // the finest digit in the tables of controllers
+  if (errors.rotation_um < kVisible_um) return;
+  fmt::print(
+      human_stream(common.json),
+      "the files contain a rotation of the whole part: up to {:.3g} um in the working volume (about X, Y, "
+      "Z: {:.3g}, {:.3g}, {:.3g} urad). The rotation can be the alignment of the instrument, and no "
+      "dimension of a part depends on it.\n",
+      errors.rotation_um, errors.rotation_urad[0], errors.rotation_urad[1], errors.rotation_urad[2]);
 }
 
 void export_controller(const ControllerArguments& arguments, Controller controller, const char* name) {
@@ -120,6 +134,7 @@ void export_controller(const ControllerArguments& arguments, Controller controll
   const Json files = write_folder(common, texts);
   print_tables(common, tables, errors);
   print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);
+  print_rotation(common, errors);
   finish(machine, common, name, left_out_of(machine, axes, at, errors), files, {}, true,
          result_json(errors, tables));
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "tools/maths/decompositions.h"
 #include "tools/model/chain/chain.h"
 
 namespace vernier::exchange {
@@ -48,6 +49,27 @@ Matrix3Xd ControllerTables::corrected(const Matrix3Xd& commands, const Matrix3Xd
   return result;
 }
 
+namespace {
+
+/// The rotation in what the tables correct. Straight lines are fitted: dY/dX and dZ/dX are the direction of
+/// the travel of X, dZ/dY the plane of X and Y; the other slopes are squareness and scale.
+void add_rotation(ControllerErrors& errors, const Matrix3Xd& points, const Matrix3Xd& corrected) {
+  const Eigen::Vector3d middle = points.rowwise().mean();
+  const Matrix3Xd from_middle = points.colwise() - middle;
+  const Eigen::MatrixXd columns = from_middle.transpose();
+  const Eigen::VectorXd y = maths::least_squares(columns, corrected.row(1).transpose()),
+                        z = maths::least_squares(columns, corrected.row(2).transpose());
+  const Eigen::Vector3d rotation(z[1], -z[0], y[0]);
+  constexpr double kUradPerRad = 1e6;
+  for (std::size_t i = 0; i < 3; ++i) errors.rotation_urad[i] = kUradPerRad * rotation[static_cast<Index>(i)];
+  for (Index k = 0; k < from_middle.cols(); ++k) {
+    const Eigen::Vector3d at = from_middle.col(k);
+    errors.rotation_um = std::max(errors.rotation_um, 1000 * rotation.cross(at).norm());
+  }
+}
+
+}  // namespace
+
 ControllerErrors controller_errors(const model::Machine& machine, const ThreeAxes& axes,
                                    const ControllerTables& tables, const model::States& at) {
   constexpr Index kPositions = 4096;
@@ -85,6 +107,7 @@ ControllerErrors controller_errors(const model::Machine& machine, const ThreeAxe
   }
   errors.rms_before_um = rms_um(before);
   errors.rms_after_um = rms_um(after);
+  add_rotation(errors, points, before - after);
   return errors;
 }
 

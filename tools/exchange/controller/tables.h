@@ -56,6 +56,10 @@ struct ControllerErrors {
   std::array<double, 3> after_positive_um{}, after_negative_um{};
   double rms_before_um = 0, rms_after_um = 0;  // rms error of X, Y and Z together
   std::size_t positions = 0;
+  /// Rotation of the whole part that the tables correct, about X, Y and Z: the travel of X is its direction,
+  /// and the travel of Y is in the plane XY. No dimension of a part depends on it.
+  std::array<double, 3> rotation_urad{};
+  double rotation_um = 0;  // largest motion by this rotation about the middle of the volume
 };
 
 /// Computes the errors with the chain at corrected commands. The errors are evaluated at 4096 positions
