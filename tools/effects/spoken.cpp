@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string_view>
 
 #include "tools/maths/factors.h"
@@ -153,6 +154,13 @@ std::string spoken_with_size(const Candidate& candidate, const std::vector<Spoke
     if (unknown.kind == UnknownKind::kPeriod)
       if (const SpokenValue* const value = find_value(values, unknown.name))
         text += fmt::format(", period {} {}", with_std(value->value, value->std), unknown.unit);
+  // exp(-since/L) is a tenth after the travel L times ln 10.
+  for (const CandidateUnknown& unknown : candidate.unknowns)
+    if (unknown.kind == UnknownKind::kTravel)
+      if (const SpokenValue* const value = find_value(values, unknown.name))
+        text += fmt::format(", 90 % after a travel of {} {}",
+                            with_std(std::numbers::ln10 * value->value, std::numbers::ln10 * value->std),
+                            unknown.unit);
   return text;
 }
 

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -45,6 +46,7 @@ class Builder {
     read_motion();
     read_inputs();
     read_labels();
+    count_travel_since_reversals();
     read_geometry();
     read_directions();
     read_distances();
@@ -164,6 +166,45 @@ class Builder {
       if (const std::string name = columns::kNormal[k]; reader_.has(name))
         states.normal[k] = reader_.numbers(name, format::Dimension::kNone, false);
     for (Column& normal : states.normal) normal = normal.isNaN().select(0, normal);
+  }
+
+  /// Computes the travel since the last reversal of each axis that has no such column, from the positions and
+  /// approach directions of successive rows of a run. The rows show all reversals of an axis only if each
+  /// step agrees with the approach direction of its row. If one step disagrees (the axis went beyond the
+  /// position and back), the travel of this axis is not known in any row.
+  void count_travel_since_reversals() {
+    States& states = result_.states;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const std::string& axis = machine_.axes[i].name;
+      if (reader_.has(format::axis_column(AxisQuantity::kSince, axis)) ||
+          !reader_.has(format::axis_column(AxisQuantity::kSense, axis)))
+        continue;
+      if (const auto since = travel_since_reversals(states.axis[i], states.direction[i]))
+        states.since[i] = *since;
+    }
+  }
+
+  std::optional<Column> travel_since_reversals(const Column& position, const Column& direction) const {
+    constexpr double kStill = 0.01;  // mm or deg: a shorter step is the scatter of a read position
+    struct Before {
+      double position = 0, direction = 0, since = kLongWay;
+      bool any = false;
+    };
+    std::vector<Before> of_run(result_.states.run_names.size());
+    Column since(position.size());
+    for (Eigen::Index row = 0; row < position.size(); ++row) {
+      Before& before = of_run[result_.states.run[static_cast<std::size_t>(row)]];
+      const double step = before.any ? position[row] - before.position : 0, sense = direction[row];
+      const bool turned = before.direction * sense < 0;
+      const bool moved = std::abs(step) > kStill;
+      if (moved ? step * sense <= 0 : turned) return std::nullopt;
+      before.since = turned ? std::abs(step) : std::min(before.since + std::abs(step), kLongWay);
+      before.position = position[row];
+      if (sense != 0) before.direction = sense;
+      before.any = true;
+      since[row] = before.since;
+    }
+    return since;
   }
 
   void read_inputs() {

@@ -28,7 +28,7 @@ struct States {
   std::vector<Column> velocity;      // mm/s, deg/s
   std::vector<Column> acceleration;  // mm/s^2, deg/s^2
   std::vector<Column> direction;     // -1, 0, +1
-  std::vector<Column> since;         // travel since the last reversal, mm or deg; kLongWay if not recorded
+  std::vector<Column> since;         // travel since the last reversal, mm or deg; kLongWay if not known
   Column feed;                       // feed, mm/min
   Column curvature;                  // curvature of the path, 1/mm
   std::array<Column, 3> normal;      // unit vector of the row's normal; 0 if the row has no normal

@@ -138,5 +138,37 @@ TEST(Course, ADragAlongThePreviousMoveIsNoPlay) {
   EXPECT_EQ(loose.ladder.at(1).effect, "lateral-play");
 }
 
+/// Wind-up: after a reversal the error is still that of the other direction. A play operator (Prandtl) moves
+/// nearly in the same way.
+TEST(Course, AReversalErrorThatBuildsUpIsNoBacklash) {
+  const Poses poses;
+  constexpr double kTravel = 60, kHalfWidth = 60;  // mm: an eighth of the axis
+  Eigen::ArrayXd wind_up(Poses::kRows), play(Poses::kRows), jump(Poses::kRows);
+  double since = 1e9, free = 0;
+  for (int i = 0; i < Poses::kRows; ++i) {
+    const int sense = poses.sense(poses.x, i);
+    const double step = i > 0 ? std::abs(poses.x[i] - poses.x[i - 1]) : 0;
+    since = i > 0 && sense != poses.sense(poses.x, i - 1) ? step : since + step;
+    wind_up[i] = 0.003 * sense * (1 - 2 * std::exp(-since / kTravel));
+    free = std::clamp(free, poses.x[i] - kHalfWidth, poses.x[i] + kHalfWidth);
+    play[i] = 0.0025 * (free - poses.x[i]) / kHalfWidth;
+    jump[i] = 0.003 * sense;
+  }
+
+  const Diagnosis wound = diagnosis_of(poses, wind_up, hall(poses));
+  const Diagnosis played = diagnosis_of(poses, play, hall(poses));
+  const Diagnosis jumped = diagnosis_of(poses, jump, hall(poses));
+
+  EXPECT_EQ(wound.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << wound.explanation;
+  ASSERT_EQ(wound.ladder.size(), 2u);
+  EXPECT_EQ(wound.ladder[1].effect, "hysteresis");
+  EXPECT_NE(wound.explanation.find("90 % after a travel of 1"), std::string::npos) << wound.explanation;
+  EXPECT_EQ(played.ladder.at(1).effect, "hysteresis") << played.explanation;
+  for (const LadderStep& step : played.ladder) EXPECT_NE(step.effect, "backlash");
+  EXPECT_EQ(jumped.verdict, Verdict::kMissingEffect) << jumped.explanation;
+  ASSERT_EQ(jumped.ladder.size(), 2u);
+  EXPECT_EQ(jumped.ladder[1].effect, "backlash");
+}
+
 }  // namespace
 }  // namespace vernier::course_test

@@ -81,6 +81,15 @@ TEST(AddString, TermsOfSeveralAxesFollowTheSenseOfEach) {
   EXPECT_EQ(pair.terms[1].text, "-(-servo_mismatch_X*vY)");
 }
 
+/// Directly after a reversal the error is still that of the other direction: the limit for a short travel is
+/// the term of a backlash.
+TEST(AddString, AReversalErrorThatBuildsUpBeginsAtThatOfTheOtherDirection) {
+  EXPECT_EQ(candidate("hysteresis:axis=X,start.L=40").terms.at(0).text,
+            "hysteresis_X_k*dirX*(1-2*exp(-sinceX/hysteresis_X_L))");
+  EXPECT_EQ(candidate("hysteresis:axis=X,start.L=40").choice.place->transform,
+            candidate("backlash:axis=X").choice.place->transform);
+}
+
 TEST(AddString, AnAxisNamedLikeAnUnknownStaysAnAxis) {
   const Candidate spike = candidate("reversal-spike:axis=L,start.L=3");
   EXPECT_EQ(spike.terms[0].text, "reversal_spike_L_k*dirL*exp(-sinceL/reversal_spike_L_L)");

@@ -31,7 +31,7 @@ TEST(Effects, CatalogueHoldsEveryIdOfTheFormats) {
                          "joint-compliance", "servo-lag",     "servo-mismatch",  "inertial-deflection",
                          "centrifugal",      "trigger-delay", "probe-pretravel", "tool-radius",
                          "time-sync",        "base-drift",    "creep",           "time-base",
-                         "vibration"})
+                         "vibration",        "hysteresis"})
     EXPECT_TRUE(known.contains(id)) << id;
 }
 

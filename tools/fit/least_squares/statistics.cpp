@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/least_squares/statistics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <string_view>
 
+#include "tools/format/columns.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain/prediction.h"
 
@@ -26,8 +29,12 @@ std::vector<double> row_conditions(const model::Measurement& m, std::size_t row)
   std::vector<double> key;
   add_pose(m, row, key);
   key.push_back(static_cast<double>(s.of(s.setup, row)));
-  for (const auto* columns : {&s.velocity, &s.acceleration, &s.direction, &s.since, &s.input})
+  for (const auto* columns : {&s.velocity, &s.acceleration, &s.direction, &s.input})
     for (const model::Column& column : *columns) key.push_back(column[at]);
+  // A travel that was computed from the order of the rows is no condition that the operator repeats.
+  const std::string_view since = format::entry_of(format::AxisQuantity::kSince).prefix;
+  if (std::ranges::any_of(m.recorded, [&](const std::string& name) { return name.starts_with(since); }))
+    for (const model::Column& column : s.since) key.push_back(column[at]);
   for (const model::Column& normal : s.normal) key.push_back(normal[at]);
   for (Eigen::Index k = 0; k < 3; ++k) {
     key.push_back(std::isnan(m.centre(k, at)) ? 0 : m.centre(k, at));
