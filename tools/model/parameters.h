@@ -26,8 +26,8 @@ struct Parameter {
   std::size_t column = 0;   // for kStation, kBaseShift and kToolShift: 0..5 = X Y Z rX rY rZ
 };
 
-/// Returns the name of a parameter without its station: `table.X.rY` for `table.X[100].rY`. The other names stay as they
-/// are.
+/// Returns the name of a parameter without its station: `table.X.rY` for `table.X[100].rY`. The other names
+/// stay as they are.
 std::string without_station(std::string parameter);
 
 /// A group of parameters that a fit frees or fixes together: a constant (static), a scale factor, a column of

@@ -8,6 +8,7 @@
 #include <memory>
 #include <set>
 
+#include "tools/commands/certain_steps.h"
 #include "tools/commands/command.h"
 #include "tools/commands/report_header.h"
 #include "tools/commands/survey.h"
@@ -173,6 +174,14 @@ class Improver {
     const std::size_t certain = certain_steps(d);
     open_.clear();
     if (d.verdict == diagnose::Verdict::kAmbiguous && certain == 0) {
+      if (const auto step = step_beside_open(d, text_, machine_, rows_, options)) {
+        fmt::print(out_,
+                   "the first effect has several possible causes; the next is certain with each of them\n");
+        if (not_confirmed_at_tool_point(*step) || !agreed(arguments_, *step, out_)) return false;
+        add(*step);
+        go_on();
+        return true;
+      }
       open_ = left_open(d);
       fmt::print(out_,
                  "no effect is added: measure the proposed poses and give all files to improve; or add one "
@@ -184,14 +193,23 @@ class Improver {
       const diagnose::LadderStep& step = d.ladder[i];
       if (not_confirmed_at_tool_point(step)) return false;
       if (!agreed(arguments_, step, out_)) return false;
-      take({"+ " + step.said, step.effect, step.add, "", step.text, step.rms_um, step.check_rms_um,
-            step.rms_urad, step.check_rms_urad});
+      add(step);
     }
+    go_on();
+    return true;
+  }
+
+  void add(const diagnose::LadderStep& step) {
+    take({"+ " + step.said, step.effect, step.add, "", step.text, step.rms_um, step.check_rms_um,
+          step.rms_urad, step.check_rms_urad});
+  }
+
+  /// Makes the machine of the last step the present machine.
+  void go_on() {
     const model::Machine before = machine_;
     text_ = model_steps_.back().text;
     machine_ = model::parse_machine(text_, arguments_.survey.machine);
     rows_ = model::rebind(rows_, before, machine_);
-    return true;
   }
 
   /// Returns what the user has although no cause is certain: the machine without the open causes, the size of
@@ -218,29 +236,6 @@ class Improver {
           " A drift from row to row is a cause only if the rows are in the order of their readings: a table "
           "that is sorted by its positions has another order.";
     return text;
-  }
-
-  /// Returns the number of steps that no other cause explains. If the verdict is ambiguous because of other
-  /// periods of a later step, the steps before it are certain. The same applies to a later step whose shape
-  /// is not confirmed.
-  static std::size_t certain_steps(const diagnose::Diagnosis& d) {
-    if (d.verdict == diagnose::Verdict::kMissingEffect)
-      return static_cast<std::size_t>(
-          std::find_if(d.ladder.begin() + 1, d.ladder.end(), [](const auto& step) { return !step.certain; }) -
-          d.ladder.begin() - 1);
-    if (d.verdict != diagnose::Verdict::kAmbiguous || d.causes.size() > 1) return 0;
-    std::size_t certain = 0;
-    while (certain + 1 < d.ladder.size()) {
-      const diagnose::LadderStep& step = d.ladder[certain + 1];
-      const auto found = std::find_if(d.candidates.begin(), d.candidates.end(), [&](const auto& candidate) {
-        return candidate.accepted && candidate.add == step.add;
-      });
-      if (!step.certain || !step.confirmed.value_or(false) || found == d.candidates.end() ||
-          !found->aliases.empty())
-        break;
-      ++certain;
-    }
-    return certain;
   }
 
   /// A step that was learned from touches of an offset probe: true, with a sentence, if check rows that touch
