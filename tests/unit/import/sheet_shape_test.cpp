@@ -190,8 +190,26 @@ TEST(SheetRows, ARowThatSaysThatItIsInvalidIsOmitted) {
   EXPECT_THAT(read(table("not valid")), HasSubstr("note: line 3: this row says"));
   for (const char* const valid : {"gültig", "ungültig?", "nicht ungültig", "not discarded", "valid"})
     EXPECT_THAT(read(table(valid)), HasSubstr("50.002")) << valid;
+  // A column of answers, or of marks.
+  const std::string answers = read("X [mm];dX [um];gültig\n0;1;ja\n50;2;nein\n100;4;ja\n");
+  EXPECT_THAT(answers, Not(HasSubstr("50.002")));
+  EXPECT_THAT(answers, HasSubstr("note: line 3: this row says \"gültig: nein\" and is omitted"));
+  const std::string marks = read("ungültig;X [mm];dX [um]\n;0;1\nx;50;2\n;100;4\n");
+  EXPECT_THAT(marks, Not(HasSubstr("50.002")));
+  EXPECT_THAT(marks, HasSubstr("note: line 3: this row says \"ungültig: x\" and is omitted"));
+  // Out of tolerance is not invalid.
+  EXPECT_THAT(read("X [mm];dX [um];Status\n0;1;i.O.\n50;2;n.i.O.\n100;4;i.O.\n"), HasSubstr("50.002"));
   EXPECT_THAT(read("X [mm];dX [um];Status\n0;1;invalid\n50;2;invalid\n"),
               HasSubstr("refused: s.csv:2: \"invalid\": each row of the table says that it is invalid"));
+}
+
+TEST(SheetRows, TheMeanOfRunsIsNoReadingWhateverItsSign) {
+  for (const char* const mean : {"x\u0304", "x\u0305", "Ø", "Mittel", "moyenne"}) {
+    const std::string out = read("X [mm];Lauf 1 [um];Lauf 2 [um];" + std::string(mean) +
+                                 " [um]\n0;1;2;1,5\n50;3;4;3,5\n100;5;6;5,5\n150;7;8;7,5\n");
+    EXPECT_THAT(out, HasSubstr("50,1,50.003\n")) << mean;
+    EXPECT_THAT(out, Not(HasSubstr("50.0035"))) << mean;
+  }
 }
 
 TEST(SheetTitle, ATitleOfAnotherAxisIsRefusedWithBothRemedies) {

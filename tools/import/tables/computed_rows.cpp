@@ -26,7 +26,8 @@ const WordSet kAlways = {
     "stdabw", "stabw", "std", "standardabweichung", "spannweite", "varianz", "variance", "sigma", "σ", "rms",
     "median", "summe", "mittelw", "streuung", "rmse", "standardab",
     // Signs of a mean, a sum and a standard deviation; capitals beyond ASCII have no small letters here.
-    "Ø", "⌀", "∅", "x̄", "x̅", "Σ", "∑", "2σ", "3σ", "±2σ", "gesamtmittel", "mittelung", "averages", "means"};
+    "Ø", "⌀", "∅", "x̄", "x̅", "Σ", "∑", "2σ", "3σ", "±2σ", "gesamtmittel", "mittelung", "averages", "means",
+    "moyenne", "écart-type"};
 // States of a machine can have these names too.
 const WordSet kSometimes = {"max",   "maximum", "maximal",  "min",    "minimum", "minimal", "range",
                             "sum",   "total",   "gesamt",   "anzahl", "count",   "spread",  "s",
@@ -115,7 +116,10 @@ bool says_invalid(const std::string& cell) {
                                    "fehlmessung", "discard",   "unbrauchbar", "unusable",   "reject"};
   static const WordSet kValid = {"gültig", "gueltig", "valid"};
   static const WordSet kNot = {"nicht", "not", "kein", "keine", "keiner", "no", "never", "nie"};
+  // No words of a tolerance ("n.i.O.", "not ok"): a reading out of tolerance is a valid reading.
+  static const WordSet kWhole = {"non valable", "invalide", "do not use", "nicht verwenden"};
   if (cell.find('?') != std::string::npos) return false;
+  if (kWhole.contains(text::in_small_letters(cell))) return true;
   bool invalid = false, valid = false, negated = false;
   for (const std::string& word : text::words_in(text::in_small_letters(cell), " \t_-./:;,()[]!=")) {
     invalid |= kInvalid.contains(word);
@@ -125,13 +129,47 @@ bool says_invalid(const std::string& cell) {
   return negated ? valid && !invalid : invalid;
 }
 
+/// What the cells of a column state by its heading: "Valid" with yes and no, "ungültig" with a mark.
+enum class Flags { kNone, kOfValid, kOfInvalid };
+
+Flags flags_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
+  static const WordSet kValid = {"valid", "gültig", "gueltig", "valid?", "gültig?", "valide"};
+  static const WordSet kInvalid = {"invalid",   "ungültig", "ungueltig", "invalid?",
+                                   "ungültig?", "rejected", "verworfen"};
+  static const WordSet kAnswers = {"",  "yes",  "no", "ja", "nein",  "oui", "non", "y", "n",
+                                   "j", "true", "0",  "1",  "false", "x",   "✓",   "-"};
+  const std::string name = text::in_small_letters(table.headings[column].name);
+  const Flags flags = kValid.contains(name)     ? Flags::kOfValid
+                      : kInvalid.contains(name) ? Flags::kOfInvalid
+                                                : Flags::kNone;
+  for (std::size_t row = table.first_data; flags != Flags::kNone && row < sheet.rows.size(); ++row)
+    if (!kAnswers.contains(text::in_small_letters(sheet.rows[row][column]))) return Flags::kNone;
+  return flags;
+}
+
+bool flag_says_invalid(Flags flags, const std::string& cell) {
+  static const WordSet kNo = {"no", "nein", "non", "n", "false", "0"};
+  static const WordSet kNoMark = {"", "-"};
+  const std::string small = text::in_small_letters(cell);
+  if (flags == Flags::kOfValid) return kNo.contains(small);
+  return flags == Flags::kOfInvalid && !kNo.contains(small) && !kNoMark.contains(small);
+}
+
 }  // namespace
 
 void leave_invalid_rows(sheet::Sheet& sheet, const sheet::SheetTable& table) {
   std::vector<std::pair<std::size_t, std::string>> invalid;
+  std::vector<Flags> flags;
+  for (std::size_t k = 0; table.has_headings && k < table.headings.size(); ++k)
+    flags.push_back(flags_of(sheet, table, k));
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const auto said = std::find_if(sheet.rows[row].begin(), sheet.rows[row].end(), says_invalid);
-    if (said != sheet.rows[row].end()) invalid.emplace_back(row, *said);
+    const std::vector<std::string>& cells = sheet.rows[row];
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const bool flagged = k < flags.size() && flag_says_invalid(flags[k], cells[k]);
+      if (!flagged && !says_invalid(cells[k])) continue;
+      invalid.emplace_back(row, flagged ? table.headings[k].name + ": " + cells[k] : cells[k]);
+      break;
+    }
   }
   if (invalid.empty()) return;
   std::size_t rows = 0;

@@ -96,17 +96,26 @@ std::set<std::string> measured_axes(const std::vector<SheetColumn>& columns,
   return moved;
 }
 
+bool names_statistic(const sheet::Heading& heading) {
+  const std::vector<std::string> words = heading_words(heading.name);
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return says_statistic(text::in_small_letters(word)); });
+}
+
 /// If no heading names an axis and the titles do, a target or an actual position belongs to that axis.
 void settle_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
                  const Guess& guess) {
   std::set<std::string> axes, of_deviations;
   bool read = false;
-  for (const SheetColumn& column : columns) {
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
     if (column.use == SheetColumn::Use::kDeviation && guess.is_axis(column.name))
       of_deviations.insert(column.name);
     if (column.use != SheetColumn::Use::kColumn) continue;
     if (guess.is_axis(column.name)) axes.insert(column.name);
-    read |= std::find(columns::kPoint.begin(), columns::kPoint.end(), column.name) != columns::kPoint.end();
+    // The heading of a mean may have the letter of a reading.
+    if (!names_statistic(table.headings[k]))
+      read |= std::find(columns::kPoint.begin(), columns::kPoint.end(), column.name) != columns::kPoint.end();
   }
   // Straightness is a deviation of another axis than the one that moves.
   if (axes.empty()) {
@@ -202,19 +211,14 @@ void refuse_another_unit(const sheet::Sheet& sheet, const sheet::SheetTable& tab
                   heading.unit, wish.column.name, wish.column.unit));
 }
 
-bool names_statistic(const sheet::Heading& heading) {
-  const std::vector<std::string> words = heading_words(heading.name);
-  return std::any_of(words.begin(), words.end(),
-                     [](const std::string& word) { return says_statistic(text::in_small_letters(word)); });
-}
-
 /// The mean or the spread of the readings in the columns beside it is no further reading.
 void leave_statistics(const sheet::SheetTable& table, std::vector<SheetColumn>& columns) {
   const Readings readings(columns);
   bool reading = false;
   for (std::size_t k = 0; k < columns.size(); ++k)
     reading |= !names_statistic(table.headings[k]) &&
-               (columns[k].use == SheetColumn::Use::kDeviation || readings.contain(columns[k]));
+               (columns[k].use == SheetColumn::Use::kDeviation || readings.contain(columns[k]) ||
+                Guess::bare(table.headings[k].name) == Guess::Bare::kActual);
   for (std::size_t k = 0; reading && k < columns.size(); ++k)
     if (columns[k].why == "by its heading" && names_statistic(table.headings[k]))
       leave(columns[k], "this column is computed from the readings in the other columns");

@@ -46,9 +46,12 @@ const WordSet kTiltWords = {"pitch",      "yaw",        "roll",   "nicken", "nic
 const WordSet kCountingWords = {"nr",    "no",    "num",    "nummer", "number", "index", "idx",       "id",
                                 "lfd",   "punkt", "punkte", "point",  "points", "pt",    "messpunkt", "row",
                                 "zeile", "#",     "n",      "pos.nr", "posnr",  "sample"};
-const WordSet kStatisticWords = {"mittel", "mittelwert", "mittelwerte", "mittlere",   "mittl",
-                                 "mean",   "average",    "avg",         "mw",         "durchschnitt",
-                                 "stdev",  "stdabw",     "stabw",       "spannweite", "standardabweichung"};
+const WordSet kStatisticWords = {"mittel", "mittelwert", "mittelwerte", "mittlere", "mittl", "mean",
+                                 "average", "avg", "mw", "durchschnitt", "stdev", "stdabw", "stabw",
+                                 "spannweite", "standardabweichung", "means", "averages", "moyenne",
+                                 "écart-type", "mittelwerts",
+                                 // Signs of a mean and of a standard deviation; Ø has no small letter here.
+                                 "x\u0304", "x\u0305", "ø", "Ø", "⌀", "∅", "σ", "2σ", "3σ"};
 const WordSet kForthWords = {"1",    "+1",       "+",       "forward", "fwd",      "forth", "up",
                              "pos",  "positive", "positiv", "vor",     "vorwärts", "hin",   "auf",
                              "plus", "cw",       "\u2191",  "\u2192",  "hinfahrt", "hinweg"};
