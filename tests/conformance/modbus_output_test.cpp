@@ -642,58 +642,87 @@ TEST_F(ModbusOutputLoss, StandstillOfTheProcessLeavesNothingValid) {
 /// Another board at the same block of a controller.
 class OtherBoard {
  public:
-  explicit OtherBoard(const Plc& plc)
-      : line_(ModbusLine::tcp("127.0.0.1", plc.port(), TimeUs(20'000), error_)) {}
+  static constexpr std::uint16_t kValue = 1900;
+  explicit OtherBoard(const Plc& plc, std::uint16_t sequence = 40'000)
+      : line_(ModbusLine::tcp("127.0.0.1", plc.port(), TimeUs(20'000), error_)), sequence_(sequence) {}
   bool write(std::chrono::milliseconds time) {
     bool all = true;
-    for (const auto end = Clock::now() + time; Clock::now() < end; std::this_thread::sleep_for(5ms)) {
-      const std::uint16_t block[] = {++sequence_, 1, 0, 1900};
+    longest_pause_ = {};
+    auto before = Clock::now();
+    for (const auto end = before + time; Clock::now() < end; std::this_thread::sleep_for(5ms)) {
+      const std::uint16_t block[] = {++sequence_, 1, 0, kValue};
       all = line_->write(1, Plc::kBlock, 4, block) && all;
+      const auto now = Clock::now();
+      longest_pause_ = std::max(longest_pause_, now - before);
+      before = now;
     }
     return all;
   }
-  std::uint16_t sequence() const { return sequence_; }
+  /// Writes until a busy computer made no pause in which this board may be taken for gone.
+  bool write_without_a_pause(std::chrono::milliseconds time, const Plc& plc, std::size_t& from) {
+    constexpr auto kTakenForGone = 4 * 50ms;  // four of the longest periods of a board
+    bool all = true;
+    for (const auto end = Clock::now() + 10s; Clock::now() < end;) {
+      from = plc.blocks().size();
+      all = write(time) && all;
+      if (longest_pause_ < kTakenForGone / 2) return all;
+    }
+    ADD_FAILURE() << "the computer is too busy for this test";
+    return false;
+  }
 
  private:
   std::string error_;
   std::shared_ptr<ModbusLine> line_;
-  std::uint16_t sequence_ = 40'000;
+  std::uint16_t sequence_;
+  Clock::duration longest_pause_{};
 };
-std::size_t blocks_of_others(const std::vector<Plc::Block>& blocks, std::size_t from, std::uint16_t last) {
+std::size_t blocks_beside(const std::vector<Plc::Block>& blocks, std::size_t from) {
   std::size_t count = 0;
   for (std::size_t i = from; i < blocks.size(); ++i)
-    count += static_cast<std::uint16_t>(last - blocks[i].sequence) > 1000 ? 1 : 0;
+    count += blocks[i].values[0] != OtherBoard::kValue ? 1 : 0;
   return count;
 }
 
-TEST_F(ModbusOutputLoss, AnotherBoardIsDetectedAndNotWrittenOver) {
-  OtherBoard other(plc_);
-  const auto end = Clock::now() + 2s;
-  HalFault fault = HalFault::kNone;
-  while (fault == HalFault::kNone && Clock::now() < end) {
+/// The numbers of the other board: anywhere, or behind those of this board as a block that was held back.
+class AnotherBoard : public ModbusOutputLoss {
+ protected:
+  void expect_detected(OtherBoard other);
+};
+void AnotherBoard::expect_detected(OtherBoard other) {
+  // A refused tick alone does not say that the other board was seen: on a busy computer ticks stand still.
+  const auto seen = [&] {
+    return output_->account().find(" 0 sequence numbers of another") == std::string::npos;
+  };
+  for (const auto end = Clock::now() + 2s; !seen() && Clock::now() < end;) {
     ASSERT_TRUE(other.write(25ms));
-    fault = ticks_->step(20'000);
+    ticks_->step(20'000);
   }
-  ASSERT_EQ(fault, HalFault::kRefused);
-  const std::size_t before = plc_.blocks().size();
-  ASSERT_TRUE(other.write(400ms));
-  EXPECT_EQ(blocks_of_others(plc_.blocks(), before, other.sequence()), 0u);
+  ASSERT_TRUE(seen()) << output_->account();
+  ASSERT_EQ(ticks_->step(20'000), HalFault::kRefused);
+  std::size_t before = 0;
+  ASSERT_TRUE(other.write_without_a_pause(400ms, plc_, before));
+  EXPECT_EQ(blocks_beside(plc_.blocks(), before), 0u);
   EXPECT_EQ(ticks_->step(20'000), HalFault::kRefused);
   expect_return_without_a_step(plc_, *output_, *ticks_);
-  EXPECT_EQ(output_->account().find(" 0 sequence numbers of another"), std::string::npos)
-      << output_->account();
+}
+
+TEST_F(AnotherBoard, IsDetectedAndNotWrittenOver) { expect_detected(OtherBoard(plc_)); }
+TEST_F(AnotherBoard, WithNumbersJustBehindIsDetected) {
+  const auto newest = plc_.blocks().back().sequence;
+  expect_detected(OtherBoard(plc_, static_cast<std::uint16_t>(newest - 500)));
 }
 
 // Another board may have begun while the controller could not be reached.
-TEST_F(ModbusOutputLoss, AnotherBoardThatBeganInALossIsNotWrittenOver) {
+TEST_F(AnotherBoard, ThatBeganInALossIsNotWrittenOver) {
   plc_.stuck = true;
   ticks_->until_refused(20'000);
   OtherBoard other(plc_);
   ASSERT_TRUE(other.write(200ms));
-  const std::size_t before = plc_.blocks().size();
   plc_.stuck = false;
-  ASSERT_TRUE(other.write(400ms));
-  EXPECT_EQ(blocks_of_others(plc_.blocks(), before, other.sequence()), 0u);
+  std::size_t before = 0;
+  ASSERT_TRUE(other.write_without_a_pause(400ms, plc_, before));
+  EXPECT_EQ(blocks_beside(plc_.blocks(), before), 0u);
   EXPECT_EQ(ticks_->step(20'000), HalFault::kRefused);
   expect_return_without_a_step(plc_, *output_, *ticks_);
 }

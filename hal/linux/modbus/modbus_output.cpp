@@ -245,8 +245,11 @@ bool ModbusOutput::may_write(Clock::time_point began, bool ticks_are_on) {
   }
   const bool ours = static_cast<std::uint16_t>(now - kept_) <= static_cast<std::uint16_t>(sequence_ - kept_);
   if (!still_since_ && ours) return true;
-  // A block of this board that the network held back: the controller must not use it for longer.
-  if (!still_since_ && now != found_ && static_cast<std::uint16_t>(sequence_ - now) < kOwnBefore) {
+  // A block of this board that the network held back: the controller must not use it for longer. Only a write
+  // without an answer leaves one, and only one; otherwise another board has numbers near those of this board.
+  if (!still_since_ && now != found_ && unanswered_writes_ > 0 &&
+      static_cast<std::uint16_t>(sequence_ - now) < kOwnBefore) {
+    --unanswered_writes_;
     lose();
     const std::scoped_lock lock(guard_);
     losses_ += healthy_.exchange(false) ? 1 : 0;
@@ -279,7 +282,9 @@ bool ModbusOutput::write_block(Clock::time_point began) {
       block[ModbusOutputSettings::kValid] =
           static_cast<std::uint16_t>(block[ModbusOutputSettings::kValid] | 1u << place);
   }
-  return line_->write(settings_.unit, settings_.address, registers(), block.data());
+  const bool written = line_->write(settings_.unit, settings_.address, registers(), block.data());
+  unanswered_writes_ += written ? 0 : 1;
+  return written;
 }
 
 void ModbusOutput::exchange(bool last) {

@@ -133,6 +133,8 @@ class ModbusOutput : public OutputDevice {
   std::optional<std::uint16_t> found_;
   bool repeat_ = false;      // true: the controller has either the last block or the previous block
   bool unanswered_ = false;  // true: the last exchange was not answered
+  /// Number of writes without an answer whose block the controller may still receive late.
+  std::uint64_t unanswered_writes_ = 0;
   Clock::time_point good_, written_;
   std::optional<Clock::time_point> still_since_;  // time since which found_ has not changed; nothing is
                                                   // written during this time
