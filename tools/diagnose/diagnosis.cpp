@@ -309,8 +309,9 @@ class Diagnoser {
   void decide() {
     if (accepted_.empty()) return;
     alternatives_ = fitted_alternatives();
-    if (alternatives_.other.empty() || alternatives_.other.front().distance >= 0) return;
+    if (alternatives_.other.empty()) return;
     const std::size_t cause = accepted_.front(), better = alternatives_.other.front().item;
+    if (alternatives_.other.front().distance >= -finder_.evidence_beyond_limit(cause, better)) return;
     if (!finder_.replace(cause, better)) return;
     Steps steps = fit_steps(finder_.chosen());
     if (steps.accepted.empty() || steps.accepted.front() != better) {

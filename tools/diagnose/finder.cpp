@@ -205,6 +205,41 @@ void Finder::select_again() {
   chi_square_ = selection.chi_square;
   simplify();
   name_usual_pairs();
+  join_reversals();
+}
+
+void Finder::join_reversals() {
+  constexpr double kRounding = 1e-6;  // of the BIC
+  for (const std::size_t item : std::vector<std::size_t>(chosen_)) {
+    const effects::Choice& choice = pool_.candidate(item).choice;
+    if (std::find(chosen_.begin(), chosen_.end(), item) == chosen_.end()) continue;
+    if (!choice.axis || !is_of_axis_alone(item, *choice.axis)) continue;
+    if (!depends_on(item, model::SymbolKind::kDirection)) continue;
+    std::vector<std::size_t> others, curves;
+    for (const std::size_t one : chosen_)
+      if (!is_of_axis_alone(one, *choice.axis) || pool_.candidate(one).choice.place != choice.place)
+        others.push_back(one);
+      else if (pool_.is_function_of_an_axis(one))
+        curves.push_back(one);
+    if (others.size() + 1 >= chosen_.size()) continue;  // no second piece
+    std::vector<std::vector<std::size_t>> besides = {{}, curves};
+    if (const auto line = most_usual(item, false)) besides.push_back({*line});
+    for (const std::size_t one : entry_item_) {
+      if (!is_of_axis_alone(one, *choice.axis) || pool_.candidate(one).choice.place != choice.place ||
+          !depends_on(one, model::SymbolKind::kSince))
+        continue;
+      for (const std::vector<std::size_t>& beside : besides) {
+        std::vector<std::size_t> set = others;
+        set.insert(set.end(), beside.begin(), beside.end());
+        set.push_back(one);
+        const Selection joined = evaluate(set);
+        if (joined.criterion >= criterion_ - kRounding) continue;
+        chosen_ = set;
+        criterion_ = joined.criterion;
+        chi_square_ = joined.chi_square;
+      }
+    }
+  }
 }
 
 void Finder::name_usual_pairs() {
@@ -255,7 +290,8 @@ void Finder::simplify(double share) {
           pool_.same_kind(chosen_[i], other) &&
           (named || pool_.penalty(pool_[other].scored) < pool_.penalty(pool_[chosen_[i]].scored)) &&
           pool_.same_columns(chosen_[i], other);
-      if (!same_but_nearer && !pool_.contains(chosen_[i], other)) continue;
+      const bool limit = is_limit(other, chosen_[i]);
+      if (!same_but_nearer && !limit && !pool_.contains(chosen_[i], other)) continue;
       // One of many forms that contain it fits better by chance, so it must lower the BIC by more.
       const double price = same_but_nearer ? 0 : 2 * std::log(std::max(1.0, holders_of(other)));
       if (!does_it && trial.criterion - criterion_ >= thresholds_.evidence + price) continue;
@@ -275,8 +311,24 @@ void Finder::simplify(double share) {
 
 double Finder::holders_of(std::size_t simple) const {
   double count = 0;
-  for (const std::size_t other : entry_item_) count += pool_.contains(other, simple) ? 1 : 0;
+  for (const std::size_t other : entry_item_)
+    count += pool_.contains(other, simple) || is_limit(simple, other) ? 1 : 0;
   return count;
+}
+
+bool Finder::is_limit(std::size_t simple, std::size_t general) const {
+  return depends_on(general, model::SymbolKind::kSince) && most_usual(general, true) == simple;
+}
+
+double Finder::evidence_beyond_limit(std::size_t simple, std::size_t general) const {
+  if (!is_limit(simple, general)) return 0;
+  return thresholds_.evidence + 2 * std::log(std::max(1.0, holders_of(simple)));
+}
+
+bool Finder::depends_on(std::size_t item, model::SymbolKind kind) const {
+  const std::optional<std::size_t>& axis = pool_.candidate(item).choice.axis;
+  return axis &&
+         drivers_of(evidence_.machine(), pool_.candidate(item)).contains({static_cast<int>(kind), *axis});
 }
 
 bool Finder::is_of_axis_alone(std::size_t item, std::size_t axis) const {
@@ -851,6 +903,15 @@ Alternatives Finder::alternatives_to(std::size_t item) const {
   }
   std::sort(found.other.begin(), found.other.end(),
             [](const Alternative& a, const Alternative& b) { return a.distance < b.distance; });
+  // One cause with several forms, travels or time constants counts once; another period is another cause.
+  std::vector<Alternative> once;
+  for (const Alternative& one : found.other)
+    if (std::none_of(once.begin(), once.end(), [&](const Alternative& nearer) {
+          return pool_.same_cause(nearer.item, one.item) && !pool_.period_of(one.item) &&
+                 pool_.candidate(nearer.item).choice.place == pool_.candidate(one.item).choice.place;
+        }))
+      once.push_back(one);
+  found.other = std::move(once);
   return found;
 }
 

@@ -93,6 +93,9 @@ class Finder {
   /// Returns the other periods that fit as well as the period of an accepted cyclic error (Scanner::aliases).
   /// The other accepted effects are unchanged.
   std::vector<double> aliases_of(std::size_t item) const;
+  /// Returns the decrease of the BIC that `general` must have over `simple`, if `simple` is its limit for a
+  /// short travel: one of many travels fits better by chance. Otherwise 0.
+  double evidence_beyond_limit(std::size_t simple, std::size_t general) const;
   /// Returns the factor by which chi^2 increases if one accepted effect is removed and the other effects are
   /// fitted again.
   double growth_without(std::size_t item) const;
@@ -130,6 +133,11 @@ class Finder {
   /// error of its axis, as in one run out and back: names these two instead, which every axis has, unless
   /// there is very strong evidence against them.
   void name_usual_pairs();
+  /// Two reversal errors of one axis at one location, or one beside a curve of the axis, can be pieces of one
+  /// reversal error that builds up over a travel: between constant points of reversal the travel since a
+  /// reversal is a function of position and direction. Names this one effect, alone or beside a straight
+  /// line, if the BIC is then lower.
+  void join_reversals();
   /// Orders the accepted effects. The effect that lowers the present residual most is first. If the errors of
   /// the readings are correlated, the most significant effect is not always the largest effect.
   void order_by_size();
@@ -137,8 +145,13 @@ class Finder {
   /// For rows without u, name_simplest uses the simplest form that explains nearly the whole decrease of
   /// chi^2, if this form passes the tests.
   void name_simplest();
+  /// True if `simple` is the limit of `general` for a short travel: a reversal error that builds up within a
+  /// short travel is a backlash.
+  bool is_limit(std::size_t simple, std::size_t general) const;
+  /// True if the term of a candidate depends on this quantity of its axis.
+  bool depends_on(std::size_t item, model::SymbolKind kind) const;
   /// Returns the number of candidates that contain the columns of the simpler form `simple` and additional
-  /// terms.
+  /// terms, or have it as a limit.
   double holders_of(std::size_t simple) const;
   void search();
   /// For each axis of which an accepted effect is more than a straight line or a reversal error: adds the

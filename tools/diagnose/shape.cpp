@@ -8,7 +8,9 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string_view>
 
+#include "tools/format/columns.h"
 #include "tools/maths/chance.h"
 
 namespace vernier::diagnose {
@@ -212,6 +214,153 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
   return {};
 }
 
+/// A square of a speed is a shape only with three speeds, standstill included. With two speeds it marks the
+/// rows of one speed, and everything else that these rows have in common is the same column.
+std::string doubt_of_square(const Evidence& evidence, const Pool& pool, std::size_t item) {
+  constexpr int kSpeedsOfASquare = 3;
+  const effects::Candidate& candidate = pool.candidate(item);
+  const auto drivers = drivers_of(evidence.machine(), candidate);
+  if (drivers.size() != 1 ||
+      static_cast<model::SymbolKind>(drivers.begin()->first) != model::SymbolKind::kVelocity)
+    return {};
+  const std::size_t axis = drivers.begin()->second;
+  const std::string square = "v" + evidence.machine().axes[axis].name + "^2";
+  if (std::none_of(candidate.terms.begin(), candidate.terms.end(),
+                   [&](const auto& term) { return term.text.find(square) != std::string::npos; }))
+    return {};
+  const Eigen::VectorXd squares =
+      evidence.at_readings(evidence.measurement().states.velocity[axis]).square().matrix();
+  const int speeds = positions_read(squares / std::max(squares.maxCoeff(), 1e-300),
+                                    evidence.thresholds().shape.squares_apart);
+  if (speeds >= kSpeedsOfASquare) return {};
+  return fmt::format(
+      "{} is the square of a speed, and the readings have {} speeds of {} with clearly different squares: "
+      "the "
+      "term marks the rows of one speed, whatever else they have in common; measure at three speeds, each at "
+      "least one and a half times the one before",
+      candidate.spoken, speeds, evidence.machine().axes[axis].name);
+}
+
+bool is_effect(const Pool& pool, std::size_t item, std::string_view id) {
+  const effects::Choice& choice = pool.candidate(item).choice;
+  return !pool.is_custom(item) && choice.effect != nullptr && choice.effect->id == id;
+}
+
+/// True if `item` is a reversal error of the axis of `choice`, at the same location.
+bool is_piece_of(const Evidence& evidence, const Pool& pool, std::size_t item,
+                 const effects::Choice& choice) {
+  const effects::Choice& other = pool.candidate(item).choice;
+  if (!other.place || !moves_alike(evidence, *other.place, *choice.place)) return false;
+  const auto drivers = drivers_of(evidence.machine(), pool.candidate(item));
+  return std::any_of(drivers.begin(), drivers.end(), [&](const auto& driver) {
+    const auto kind = static_cast<model::SymbolKind>(driver.first);
+    return driver.second == choice.axis &&
+           (kind == model::SymbolKind::kDirection || kind == model::SymbolKind::kSince);
+  });
+}
+
+bool has_travel(const Evidence& evidence) {
+  const std::string_view since = format::entry_of(format::AxisQuantity::kSince).prefix;
+  return std::ranges::any_of(evidence.measurement().recorded,
+                             [&](const std::string& name) { return name.starts_with(since); });
+}
+
+/// A backlash that changes along its axis, or a backlash beside a reversal spike, is doubtful if a reversal
+/// error that builds up explains as much of what a straight line and a constant backlash leave. The axis then
+/// turned at the same positions, and the travel since a reversal is a function of position and direction; or
+/// it turned at unknown positions, and the travel has an unknown offset.
+std::string doubt_of_reversal(const Evidence& evidence, const Pool& pool,
+                              const std::vector<std::size_t>& items, std::size_t item) {
+  const effects::Choice& choice = pool.candidate(item).choice;
+  if (!choice.axis || !choice.place || !is_piece_of(evidence, pool, item, choice)) return {};
+  std::vector<std::size_t> pieces, others;
+  std::size_t reversals = 0;
+  for (const std::size_t one : items) {
+    const bool reversal = is_piece_of(evidence, pool, one, choice);
+    const bool curve = pool.is_function_of_an_axis(one) && pool.candidate(one).choice.axis == choice.axis &&
+                       moves_alike(evidence, *pool.candidate(one).choice.place, *choice.place);
+    reversals += reversal ? 1 : 0;
+    (reversal || curve ? pieces : others).push_back(one);
+  }
+  const bool varies = is_effect(pool, item, "backlash") && pool[item].columns.cols() > 1;
+  if (!varies && (reversals < 2 || has_travel(evidence))) return {};
+
+  const Eigen::ArrayXd answer = evidence.response(evidence.index_of(*choice.place)).array();
+  const Eigen::ArrayXd dir = evidence.at_readings(evidence.measurement().states.direction[*choice.axis]);
+  const Eigen::MatrixXd beside_it = pool.columns(others);
+  Eigen::MatrixXd usual(answer.size(), 2);
+  usual << answer * positions(evidence, *choice.axis).array(), answer * dir;
+  evidence.whiten(usual);
+  Eigen::MatrixXd beside(answer.size(), beside_it.cols() + usual.cols());
+  beside << beside_it, beyond_model(evidence, usual);
+  const double found = own_part(evidence, pool.columns(pieces), beside).explained();
+  for (std::size_t one = 0; one < pool.size(); ++one) {
+    const effects::Choice& other = pool.candidate(one).choice;
+    if (!is_effect(pool, one, "hysteresis") || other.axis != choice.axis || other.place != choice.place)
+      continue;
+    if (own_part(evidence, pool[one].columns, beside).explained() <
+        (1 - evidence.thresholds().shape.minor) * found)
+      continue;
+    return fmt::format(
+        "{} can be a reversal error that builds up over a travel after each reversal ({}); measure with "
+        "reversals at several positions, and record the travel since the reversal (column since{})",
+        pool.candidate(item).spoken, pool.candidate(one).spoken, evidence.machine().axes[*choice.axis].name);
+  }
+  return {};
+}
+
+/// Unit columns of the readings before the first recorded reversal of an axis. None if they are the half of
+/// all readings or more.
+Eigen::MatrixXd before_first_reversal(const Evidence& evidence, std::size_t axis) {
+  const model::Column& direction = evidence.measurement().states.direction[axis];
+  model::Column known = model::Column::Ones(direction.size());
+  double first = 0;
+  for (Index row = 0; row < direction.size() && direction[row] * first >= 0; ++row) {
+    if (direction[row] != 0) first = direction[row];
+    known[row] = 0;
+  }
+  const Eigen::ArrayXd at = evidence.at_readings(known);
+  const Index count = (at == 0).count();
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(at.size(), 2 * count >= at.size() ? 0 : count);
+  for (Index reading = 0, k = 0; reading < at.size() && k < columns.cols(); ++reading)
+    if (at[reading] == 0) columns(reading, k++) = 1;
+  return columns;
+}
+
+/// Beside a reversal error that builds up, another reversal error of the same axis is a piece of it: nobody
+/// knows the exact function of the travel. An effect that only the readings before the first recorded
+/// reversal show can be the state of the axis before. A step of the instrument can be the state of the axis
+/// at the begin of a run, which a travel that is computed from the rows does not contain.
+std::string doubt_beside_hysteresis(const Evidence& evidence, const Pool& pool,
+                                    const std::vector<std::size_t>& items, std::size_t item) {
+  for (const std::size_t other : items) {
+    if (other == item || !is_effect(pool, other, "hysteresis")) continue;
+    if (is_effect(pool, item, "hysteresis") && item < other) continue;
+    if (is_piece_of(evidence, pool, item, pool.candidate(other).choice))
+      return fmt::format("{} can be a part of the reversal error that builds up ({})",
+                         pool.candidate(item).spoken, pool.candidate(other).spoken);
+    if (has_travel(evidence)) continue;
+    const auto& place = pool.candidate(item).choice.place;
+    const bool step = is_effect(pool, item, "base-drift") &&
+                      (!place || moves_alike(evidence, *place, *pool.candidate(other).choice.place));
+    std::vector<std::size_t> others;
+    for (const std::size_t one : items)
+      if (one != item) others.push_back(one);
+    const Eigen::MatrixXd beside = pool.columns(others),
+                          begin = before_first_reversal(evidence, *pool.candidate(other).choice.axis);
+    Eigen::MatrixXd all(beside.rows(), beside.cols() + begin.cols());
+    all << beside, begin;
+    const double later = own_part(evidence, pool[item].columns, all).explained(),
+                 ever = own_part(evidence, pool[item].columns, beside).explained();
+    if (step || later < evidence.thresholds().shape.minor * ever)
+      return fmt::format(
+          "{} can be the reversal error ({}) at the begin of a run: the way of the axis before its first row "
+          "is not recorded",
+          pool.candidate(item).spoken, pool.candidate(other).spoken);
+  }
+  return {};
+}
+
 }  // namespace
 
 Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside) {
@@ -278,6 +427,13 @@ std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std
     const std::string doubt = doubt_of_curve(evidence, pool, items, item);
     if (!doubt.empty()) return doubt;
   }
+  if (const std::string doubt = doubt_of_square(evidence, pool, item); !doubt.empty()) return doubt;
+  const bool builds_up =
+      std::ranges::any_of(items, [&](std::size_t one) { return is_effect(pool, one, "hysteresis"); });
+  if (const std::string doubt = builds_up ? doubt_beside_hysteresis(evidence, pool, items, item)
+                                          : doubt_of_reversal(evidence, pool, items, item);
+      !doubt.empty())
+    return doubt;
   // Without a given uncertainty the residual is not known to be noise. It may contain other
   // effects.
   if (evidence.noise_known() &&
@@ -300,6 +456,9 @@ bool stands_beside(const Evidence& evidence, const Pool& pool, std::size_t item,
   if (drivers.empty() || pool.is_custom(item) || !std::all_of(drivers.begin(), drivers.end(), is_of_motion))
     return false;
   return std::none_of(doubtful.begin(), doubtful.end(), [&](std::size_t other) {
+    if (is_effect(pool, item, "hysteresis") && other != item &&
+        is_piece_of(evidence, pool, other, pool.candidate(item).choice))
+      return false;
     const auto others = drivers_of(evidence.machine(), pool.candidate(other));
     return other == item || std::any_of(others.begin(), others.end(),
                                         [&](const auto& driver) { return drivers.contains(driver); });

@@ -154,13 +154,15 @@ std::string spoken_with_size(const Candidate& candidate, const std::vector<Spoke
     if (unknown.kind == UnknownKind::kPeriod)
       if (const SpokenValue* const value = find_value(values, unknown.name))
         text += fmt::format(", period {} {}", with_std(value->value, value->std), unknown.unit);
-  // exp(-since/L) is a tenth after the travel L times ln 10.
+  // exp(-since/L) is a tenth after the travel L times ln 10; a ramp (rule W) has an end.
   for (const CandidateUnknown& unknown : candidate.unknowns)
     if (unknown.kind == UnknownKind::kTravel)
-      if (const SpokenValue* const value = find_value(values, unknown.name))
-        text += fmt::format(", 90 % after a travel of {} {}",
-                            with_std(std::numbers::ln10 * value->value, std::numbers::ln10 * value->std),
-                            unknown.unit);
+      if (const SpokenValue* const value = find_value(values, unknown.name)) {
+        const bool ramp = unknown.rule == "W";
+        const double part = ramp ? 1 : std::numbers::ln10;
+        text += fmt::format(", {} after a travel of {} {}", ramp ? "complete" : "90 %",
+                            with_std(part * value->value, part * value->std), unknown.unit);
+      }
   return text;
 }
 

@@ -171,7 +171,10 @@ class Builder {
   /// Computes the travel since the last reversal of each axis that has no such column, from the positions and
   /// approach directions of successive rows of a run. The rows show all reversals of an axis only if each
   /// step agrees with the approach direction of its row. If one step disagrees (the axis went beyond the
-  /// position and back), the travel of this axis is not known in any row.
+  /// position and back), the travel of this axis is not known in any row. A turn at one position, as at the
+  /// ends of a linear test, counts as travel 0: the axis went a little beyond it. A run begins where the row
+  /// before it in the file ended; if the way to its first row disagrees with the direction of this row, the
+  /// axis turned shortly before, and the travel is 0 too.
   void count_travel_since_reversals() {
     States& states = result_.states;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
@@ -187,21 +190,29 @@ class Builder {
   std::optional<Column> travel_since_reversals(const Column& position, const Column& direction) const {
     constexpr double kStill = 0.01;  // mm or deg: a shorter step is the scatter of a read position
     struct Before {
-      double position = 0, direction = 0, since = kLongWay;
+      double position = 0, direction = 0, since = 0;
       bool any = false;
     };
     std::vector<Before> of_run(result_.states.run_names.size());
     Column since(position.size());
+    Before last;  // of any run
     for (Eigen::Index row = 0; row < position.size(); ++row) {
       Before& before = of_run[result_.states.run[static_cast<std::size_t>(row)]];
+      const bool begins = !before.any;
+      if (begins) before = last;
       const double step = before.any ? position[row] - before.position : 0, sense = direction[row];
-      const bool turned = before.direction * sense < 0;
-      const bool moved = std::abs(step) > kStill;
-      if (moved ? step * sense <= 0 : turned) return std::nullopt;
-      before.since = turned ? std::abs(step) : std::min(before.since + std::abs(step), kLongWay);
+      const bool moved = std::abs(step) > kStill, agrees = step * sense > 0;
+      if (moved && !agrees && !begins) return std::nullopt;
+      if (moved && !agrees)
+        before.since = 0;
+      else if (before.direction * sense < 0)
+        before.since = std::abs(step);
+      else
+        before.since = std::min(before.since + std::abs(step), kLongWay);
       before.position = position[row];
       if (sense != 0) before.direction = sense;
       before.any = true;
+      last = before;
       since[row] = before.since;
     }
     return since;

@@ -86,6 +86,8 @@ TEST(AddString, TermsOfSeveralAxesFollowTheSenseOfEach) {
 TEST(AddString, AReversalErrorThatBuildsUpBeginsAtThatOfTheOtherDirection) {
   EXPECT_EQ(candidate("hysteresis:axis=X,start.L=40").terms.at(0).text,
             "hysteresis_X_k*dirX*(1-2*exp(-sinceX/hysteresis_X_L))");
+  EXPECT_EQ(candidate("hysteresis:axis=X,form=ramp,start.W=40").terms.at(0).text,
+            "hysteresis_X_k*dirX*min(1,2*sinceX/hysteresis_X_W-1)");
   EXPECT_EQ(candidate("hysteresis:axis=X,start.L=40").choice.place->transform,
             candidate("backlash:axis=X").choice.place->transform);
 }

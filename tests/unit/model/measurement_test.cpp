@@ -140,20 +140,26 @@ TEST(MeasurementFile, CountsTheTravelSinceAReversalFromSuccessiveRows) {
   const Measurement m = read(
       "X[mm],B[deg],dirX,x[mm],run\n0,0,1,0,a\n40,0,1,0,a\n10,0,-1,0,a\n10.003,0,-1,0,a\n5,0,-1,0,a\n"
       "100,0,1,0,b\n20,0,-1,0,b\n");
-  const double expected[] = {kLongWay, kLongWay, 30, 30.003, 35.006, kLongWay, 80};
+  // Run b begins with the way from the last row of run a. The travel before the first row is not known: 0.
+  const double expected[] = {0, 40, 30, 30.003, 35.006, 95, 80};
   for (Eigen::Index row = 0; row < 7; ++row) EXPECT_NEAR(m.states.since[0][row], expected[row], 1e-6) << row;
   EXPECT_EQ(m.states.since[1][3], kLongWay);  // B has no column of directions
   EXPECT_FALSE(m.has_recorded("sinceX"));
 }
 
 /// The axis went beyond a position and came back: no row shows the reversal.
+TEST(MeasurementFile, ARunThatBeginsAgainstTheWayToItsFirstRowBeganWithATurn) {
+  const Measurement m = read("X[mm],B[deg],dirX,x[mm],run\n0,0,1,0,a\n40,0,1,0,a\n10,0,1,0,b\n40,0,1,0,b\n");
+  const double expected[] = {0, 40, 0, 30};
+  for (Eigen::Index row = 0; row < 4; ++row) EXPECT_NEAR(m.states.since[0][row], expected[row], 1e-6) << row;
+}
 TEST(MeasurementFile, TheTravelSinceAReversalIsNotKnownIfAStepDisagreesWithItsDirection) {
   const auto last = [](const std::string& rows) {
     return read("X[mm],B[deg],dirX,x[mm]\n0,0,1,0\n40,0,1,0\n10,0,-1,0\n" + rows).states.since[0].tail(1)[0];
   };
   EXPECT_EQ(last("5,0,-1,0\n"), 35);
   EXPECT_EQ(last("5,0,1,0\n"), kLongWay);
-  EXPECT_EQ(last("10,0,1,0\n"), kLongWay);
+  EXPECT_EQ(last("10,0,1,0\n"), 0) << "the end of a linear test: a little beyond the position and back";
   EXPECT_EQ(last("5,0,0,0\n"), kLongWay);
   EXPECT_EQ(last("10,0,0,0\n"), 30);
   EXPECT_EQ(read("X[mm],B[deg],dirX,sinceX[mm],x[mm]\n0,0,1,7,0\n40,0,1,7,0\n").states.since[0][1], 7);

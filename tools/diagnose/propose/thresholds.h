@@ -247,6 +247,11 @@ struct ShapeThresholds {
   double seen_per_unknown = 1 + levels.most, seen_per_period = levels.periods;
   /// Positions with a distance below this fraction of the range count as one position.
   double apart = levels.negligible;
+  /// A backlash that changes along the axis is doubtful if a reversal error that builds up explains all but
+  /// this share of the change.
+  double minor = levels.minor;
+  /// Squares of speeds with a distance below this fraction of the largest square count as one speed.
+  double squares_apart = levels.alike;
   /// Smallest fraction of a column's length that must remain after projection on the orthogonal complement of
   /// the other columns. A column with a smaller fraction is not independent.
   double own = levels.invisible;
