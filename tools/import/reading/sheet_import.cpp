@@ -16,6 +16,7 @@
 #include "tools/import/sizes/outlying_cells.h"
 #include "tools/import/sizes/position_sizes.h"
 #include "tools/import/sizes/row_shift.h"
+#include "tools/import/sizes/typed_cells.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/computed_rows.h"
 #include "tools/import/tables/directions.h"
@@ -212,6 +213,10 @@ void judge_sizes(SheetReading& reading) {
   // A run or a direction in another unit is named as such.
   for (SizeDoubt& doubt : judge_mixed_units(reading.sheet, reading.table, sized))
     doubts.push_back(std::move(doubt));
+  for (SizeDoubt& doubt : judge_targets(reading.sheet, reading.table, sized))
+    doubts.push_back(std::move(doubt));
+  for (SizeDoubt& doubt : judge_lost_signs(reading.sheet, reading.table, sized))
+    doubts.push_back(std::move(doubt));
   for (const SizeDoubt& doubt : doubts) {
     SheetColumn& column = reading.columns[doubt.column];
     if (!column.doubt.empty()) continue;
@@ -219,7 +224,9 @@ void judge_sizes(SheetReading& reading) {
     column.doubt_word = doubt.word.empty() ? reading.table.headings[doubt.column].text : doubt.word;
     column.doubt = doubt.text;
   }
-  if (doubts.empty()) note_outlying_cells(reading.sheet, reading.table, sized);
+  if (!doubts.empty()) return;
+  note_outlying_cells(reading.sheet, reading.table, sized);
+  note_other_scales(reading.sheet, reading.table, sized);
 }
 
 /// Notes the titles that stated the units of deviations and positions.

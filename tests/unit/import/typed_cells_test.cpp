@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cells that somebody typed with another decimal sign or another unit than the other cells of their column.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/unit/import/table_reading.h"
+#include "tools/import/sizes/typed_cells.h"
+
+namespace vernier::typed_cells_test {
+
+using namespace vernier::importer;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+using vernier::importer_test::read;
+namespace {
+
+TEST(TypedCells, RefusesManyLostDecimalSigns) {
+  const std::string rows =
+      "X [mm];dX [um]\n0;-07\n50;1,8\n100;13\n150;3,8\n200;33\n250;5,8\n300;53\n350;7,8\n400;73\n450;9,8\n";
+  EXPECT_THAT(read(rows), AllOf(StartsWith("refused: s.csv:2: \"-07\": this cell and 4 more"),
+                                HasSubstr("1/10 of their values agrees"),
+                                HasSubstr("give --deviation \"X[um]=dX [um]\"")));
+  SheetWords words;
+  words.deviations = {"X[um]=dX [um]"};
+  EXPECT_THAT(read(rows, words), AllOf(HasSubstr("100,100.013"), HasSubstr("note: line 2, \"-07\"")));
+}
+
+TEST(TypedCells, ReadsWholeNumbersAmongDecimals) {
+  // Trailing zeros cut off, and values with two digits in a curve of the axis.
+  EXPECT_THAT(read("X [mm];dX [um]\n0;0,3\n50;12\n100;0,4\n150;15\n200;11,7\n250;13\n300;0,5\n350;12,5\n"),
+              AllOf(StartsWith("X[mm]"), Not(HasSubstr("note"))));
+  EXPECT_THAT(read("X [mm];dX [um]\n0;1,8\n50;3,8\n100;7,9\n150;13\n200;17\n250;22\n300;18\n350;9,5\n"),
+              StartsWith("X[mm]"));
+}
+
+TEST(TypedCells, RefusesATargetOutOfOrder) {
+  EXPECT_THAT(read("X [mm];dX [um]\n0,5;1\n50,5;2\n100,5;3\n1505;4\n200,5;3\n250,5;2\n"),
+              AllOf(StartsWith("refused: s.csv:5: \"1505\": this position is out of order between 100.5 and "
+                               "200.5, and 1/10 of it is in order"),
+                    HasSubstr("--column \"X[mm]=X [mm]\"")));
+  EXPECT_THAT(read("X [mm];dX [um]\n0;1\n50;2\n100;3\n150;4\n200;3\n2500;2\n"),
+              StartsWith("refused: s.csv:7: \"2500\": this position is out of order behind 200"));
+}
+
+TEST(TypedCells, FindsMisplacedTargetsInAnOrderOnly) {
+  const auto misplaced = misplaced_targets({10, 20, 30, 4, 50, 60, 50, 40, 300, 20, 10});
+  ASSERT_EQ(misplaced.size(), 2U);
+  EXPECT_EQ(misplaced[0].index, 3U);
+  EXPECT_EQ(misplaced[0].times, 10);
+  EXPECT_EQ(misplaced[1].index, 8U);
+  EXPECT_EQ(misplaced[1].times, 0.1);
+  // A return to the first target, a grid, random positions, and the reading 0 at the end of a way back.
+  EXPECT_TRUE(misplaced_targets({10, 30, 50, 70, 90, 10, 110, 130}).empty());
+  EXPECT_TRUE(misplaced_targets({10, 20, 30, 40, 50, 10}).empty());
+  EXPECT_TRUE(misplaced_targets({0, 0, 0, 200, 200, 200, 400, 400, 400}).empty());
+  EXPECT_TRUE(misplaced_targets({7, 310, 44, 120, 95, 410, 12, 130, 55, 260}).empty());
+  EXPECT_TRUE(misplaced_targets({200.0148, 150.0140, 100.0138, 50.0100, 0.0062}).empty());
+}
+
+TEST(TypedCells, RefusesTargetsInMetresBelowMillimetres) {
+  const std::string rows =
+      "X [mm];dX [um]\n0;1\n50;2\n100;3\n150;4\n200;3\n250;2\n0,300;3\n0,350;2\n0,400;1\n";
+  EXPECT_THAT(read(rows), AllOf(StartsWith("refused: s.csv:8: \"0,300\": in this line and in 2 more"),
+                                HasSubstr("(m and mm)")));
+  // Fine steps near zero have more decimals too.
+  EXPECT_THAT(read("X [mm];dX [um]\n0;1\n0,005;2\n0,010;3\n50;4\n100;3\n150;2\n200;3\n250;2\n"),
+              StartsWith("X[mm]"));
+}
+
+TEST(TypedCells, NotesSingleCellsInAnotherUnit) {
+  EXPECT_THAT(read("X [mm];dX [um]\n0;0,7\n50;1,8\n100;2,3\n150;0,0038\n200;3,3\n250;5,8\n300;5,3\n"),
+              HasSubstr("note: line 5, \"0,0038\": this cell of \"dX [um]\" has more decimals"));
+  EXPECT_THAT(read("X [mm];dX [um]\n0;0,7\n50;1,8\n100;2,3\n150;3,852\n200;3,3\n250;5,8\n300;5,3\n"),
+              Not(HasSubstr("note")));
+}
+
+TEST(TypedCells, NotesARunOfTenTimesTheSize) {
+  EXPECT_THAT(
+      read("X [mm];Lauf 1 [um];Lauf 2 [um]\n0;-0,7;-3\n50;1,8;22\n100;1,3;17\n150;3,8;42\n200;3,3;37\n"),
+      HasSubstr("note: line 2, \"-3\": the deviations of run 2 are about 10 times those of run 1"));
+  EXPECT_THAT(
+      read("X [mm];Lauf 1 [um];Lauf 2 [um]\n0;-0,7;3\n50;1,8;-12\n100;1,3;17\n150;3,8;-4\n200;3,3;9\n"),
+      Not(HasSubstr("times those of")));
+}
+
+}  // namespace
+}  // namespace vernier::typed_cells_test
