@@ -10,6 +10,8 @@
 #include "tools/format/units.h"
 #include "tools/import/reading/axis_rows.h"
 #include "tools/import/reading/degree_cells.h"
+#include "tools/import/reading/invalid_rows.h"
+#include "tools/import/reading/rows_below.h"
 #include "tools/import/reading/side_runs.h"
 #include "tools/import/reading/title_lines.h"
 #include "tools/import/sizes/deviation_sizes.h"
@@ -282,10 +284,15 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   leave_words_below(result.sheet, result.table);
   note_short_rows(result.sheet, result.table);
   leave_invalid_rows(result.sheet, result.table);
+  refuse_counts_below(result.sheet, result.table);
   leave_computed_rows(result.sheet, result.table);
   const bool axes_left = std::any_of(words.left.begin(), words.left.end(), [&](const std::string& one) {
     return find_heading(result.table, one) != std::string::npos;
   });
+  std::vector<std::string> named = words.left;
+  named.insert(named.end(), words.columns.begin(), words.columns.end());
+  named.insert(named.end(), words.deviations.begin(), words.deviations.end());
+  leave_differences(result.sheet, result.table, named);
   const bool unfolded_axes = !axes_left && unfold_axes(result.sheet, result.table, result.wishes);
   stack_runs(result.sheet, result.table);
   result.runs = unfold_runs(result.sheet, result.table);

@@ -32,11 +32,13 @@ bool is_run_number(const std::string& word) {
          word.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// Run and direction of a title that says nothing else: "Lauf 2 rückwärts", "Run 3, backward".
+/// Run and direction of a title that says nothing else: "Lauf 2 rückwärts", "Run 3, backward", "Achse X
+/// zurück".
 std::optional<RunTitle> run_title(const std::string& cell) {
   static const TitleWords kRuns = {"lauf",   "run",   "messlauf", "messreihe",   "durchgang", "pass",
                                    "zyklus", "cycle", "messung",  "measurement", "fahrt"};
-  static const TitleWords kBeside = {"richtung", "direction", "nr", "no"};
+  static const TitleWords kBeside = {"richtung", "direction", "nr", "no", "achse", "axis", "axe"};
+  static const TitleWords kAxes = {"X", "Y", "Z", "A", "B", "C", "U", "V", "W"};
   RunTitle title{"", cell, 0};
   bool said = false;
   for (const std::string& word : heading_words(cell)) {
@@ -49,7 +51,7 @@ std::optional<RunTitle> run_title(const std::string& cell) {
     } else if (sense_said(small) != 0) {
       if (title.sense != 0) return std::nullopt;
       title.sense = sense_said(small);
-    } else if (!kBeside.contains(small)) {
+    } else if (!kBeside.contains(small) && !kAxes.contains(word)) {
       return std::nullopt;
     }
   }

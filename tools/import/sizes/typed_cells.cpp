@@ -44,7 +44,7 @@ constexpr double kOtherUnit = 1000;
 constexpr double kRatioSpread = 1.25;
 constexpr double kResidualShare = 0.25;  // of the readings; unrelated runs have 1
 constexpr std::size_t kFewestCommon = 5;
-constexpr std::size_t kMostRuns = 200;  // more runs are labels of the rows
+constexpr std::size_t kMostScales = 200;  // more runs are labels of the rows
 
 std::size_t decimals_of(const std::string& cell, bool comma) {
   const auto sign = cell.rfind(comma ? ',' : '.');
@@ -252,17 +252,26 @@ void note_run_of_other_scale(sheet::Sheet& sheet, const sheet::SheetTable& table
   if ((!beside.run && !beside.sense) || !beside.position) return;
   std::map<std::string, std::size_t> first_row;
   const auto runs = readings_by_run(sheet, table, beside, k, first_row);
-  if (runs.size() > kMostRuns) return;
+  if (runs.size() > kMostScales) return;
+  // The run that differs from most others has the wrong scale.
+  std::map<std::string, std::size_t> apart;
+  for (const auto& [name, large] : runs)
+    for (const auto& [other, small] : runs)
+      if (factor_between(small, large) != 0) ++apart[name], ++apart[other];
   for (const auto& [name, large] : runs)
     for (const auto& [other, small] : runs) {
       const double factor = factor_between(small, large);
       if (factor == 0) continue;
-      const std::size_t row = first_row.at(name);
+      const bool too_large = apart[name] >= apart[other];
+      const std::string &wrong = too_large ? name : other, &usual = too_large ? other : name;
+      const std::size_t row = first_row.at(wrong);
       sheet.notes.push_back(fmt::format(
-          "line {}, \"{}\": the deviations of {} are about {} times those of {} at all common positions: are "
-          "the decimal signs of {} lost, or is the unit another one? The values are read; if they are wrong, "
-          "correct the cells of {}",
-          sheet.line[row], sheet.rows[row][k], name, factor, other, name, name));
+          "line {}, \"{}\": the deviations of {} are about {} those of {} at all common positions: is a "
+          "decimal sign lost, or is the unit another one? The values are read; if they are wrong, correct "
+          "the "
+          "cells of {}",
+          sheet.line[row], sheet.rows[row][k], wrong,
+          too_large ? fmt::format("{} times", factor) : fmt::format("1/{} of", factor), usual, wrong));
       return;
     }
 }

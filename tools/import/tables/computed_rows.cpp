@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "tools/import/words/sheet_words.h"
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
@@ -46,6 +48,7 @@ bool is_count(const std::string& word) { return word.find_first_not_of("01234567
 Names computed_word(const std::string& cell) {
   Names found = Names::kNoRow;
   bool standard = false, deviation = false;
+  if (says_standard_deviation(cell)) return Names::kRow;
   for (const std::string& word : text::words_in(text::in_small_letters(cell), " \t_-./:;,()[]=")) {
     standard |= word == "standard" || word == "std";
     deviation |= word == "deviation" || word == "dev" || word == "abweichung";
@@ -108,93 +111,47 @@ std::vector<std::size_t> computed_rows_by(const sheet::Sheet& sheet, const sheet
   return rows;
 }
 
-/// True for a remark that says that its row is no valid reading. A negation ("nicht ungültig") and a question
-/// ("ungültig?") are no such remark.
-bool says_invalid(const std::string& cell) {
-  static const WordSet kInvalid = {"ungültig",    "ungueltig", "ungültige",   "ungültiger", "ungültiges",
-                                   "invalid",     "verworfen", "discarded",   "void",       "rejected",
-                                   "fehlmessung", "discard",   "unbrauchbar", "unusable",   "reject"};
-  static const WordSet kValid = {"gültig", "gueltig", "valid"};
-  static const WordSet kNot = {"nicht", "not", "kein", "keine", "keiner", "no", "never", "nie"};
-  // No words of a tolerance ("n.i.O.", "not ok"): a reading out of tolerance is a valid reading.
-  static const WordSet kWhole = {"non valable", "invalide", "do not use", "nicht verwenden"};
-  if (cell.find('?') != std::string::npos) return false;
-  if (kWhole.contains(text::in_small_letters(cell))) return true;
-  bool invalid = false, valid = false, negated = false;
-  for (const std::string& word : text::words_in(text::in_small_letters(cell), " \t_-./:;,()[]!=")) {
-    invalid |= kInvalid.contains(word);
-    valid |= kValid.contains(word);
-    negated |= kNot.contains(word);
+/// The first cell of a row that is not empty.
+std::string label_of(const std::vector<std::string>& cells) {
+  const auto first =
+      std::find_if(cells.begin(), cells.end(), [](const std::string& cell) { return !cell.empty(); });
+  return first == cells.end() ? "" : *first;
+}
+
+/// Results with a name ("A =", "Reversal B") in the block of rows at the end whose first cells are words in
+/// a column of numbers, if a row of the block is named as computed.
+std::vector<std::size_t> results_at_the_end(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  std::vector<std::size_t> block;
+  bool computed = false;
+  if (sheet.rows.empty() || sheet.rows.front().empty() || !is_column_of_numbers(sheet, table, 0)) return {};
+  for (std::size_t row = sheet.rows.size(); row-- > table.first_data + 1;) {
+    const std::string& cell = sheet.rows[row].front();
+    const Names word = computed_word(cell);
+    // A mistyped number ("1OO") has digits.
+    const bool name =
+        !cell.empty() && cell.find_first_of("0123456789") == std::string::npos &&
+        std::any_of(cell.begin(), cell.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
+    if (word == Names::kNoRow && !name) break;
+    computed |= word == Names::kRow;
+    if (word == Names::kNoRow) block.push_back(row);
   }
-  return negated ? valid && !invalid : invalid;
-}
-
-/// What the cells of a column state by its heading: "Valid" with yes and no, "ungültig" with a mark.
-enum class Flags { kNone, kOfValid, kOfInvalid };
-
-Flags flags_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
-  static const WordSet kValid = {"valid", "gültig", "gueltig", "valid?", "gültig?", "valide"};
-  static const WordSet kInvalid = {"invalid",   "ungültig", "ungueltig", "invalid?",
-                                   "ungültig?", "rejected", "verworfen"};
-  static const WordSet kAnswers = {"",  "yes",  "no", "ja", "nein",  "oui", "non", "y", "n",
-                                   "j", "true", "0",  "1",  "false", "x",   "✓",   "-"};
-  const std::string name = text::in_small_letters(table.headings[column].name);
-  const Flags flags = kValid.contains(name)     ? Flags::kOfValid
-                      : kInvalid.contains(name) ? Flags::kOfInvalid
-                                                : Flags::kNone;
-  for (std::size_t row = table.first_data; flags != Flags::kNone && row < sheet.rows.size(); ++row)
-    if (!kAnswers.contains(text::in_small_letters(sheet.rows[row][column]))) return Flags::kNone;
-  return flags;
-}
-
-bool flag_says_invalid(Flags flags, const std::string& cell) {
-  static const WordSet kNo = {"no", "nein", "non", "n", "false", "0"};
-  static const WordSet kNoMark = {"", "-"};
-  const std::string small = text::in_small_letters(cell);
-  if (flags == Flags::kOfValid) return kNo.contains(small);
-  return flags == Flags::kOfInvalid && !kNo.contains(small) && !kNoMark.contains(small);
+  if (!computed) block.clear();
+  return block;
 }
 
 }  // namespace
 
-void leave_invalid_rows(sheet::Sheet& sheet, const sheet::SheetTable& table) {
-  std::vector<std::pair<std::size_t, std::string>> invalid;
-  std::vector<Flags> flags;
-  for (std::size_t k = 0; table.has_headings && k < table.headings.size(); ++k)
-    flags.push_back(flags_of(sheet, table, k));
-  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const std::vector<std::string>& cells = sheet.rows[row];
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      const bool flagged = k < flags.size() && flag_says_invalid(flags[k], cells[k]);
-      if (!flagged && !says_invalid(cells[k])) continue;
-      invalid.emplace_back(row, flagged ? table.headings[k].name + ": " + cells[k] : cells[k]);
-      break;
-    }
-  }
-  if (invalid.empty()) return;
-  std::size_t rows = 0;
-  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
-    rows += sheet::is_blank(sheet.rows[row]) ? 0 : 1;
-  if (invalid.size() >= rows)
-    throw text::InputError(
-        {sheet.file, sheet.line[invalid.front().first]}, invalid.front().second,
-        "each row of the table says that it is invalid: measure again, or delete this column in the file");
-  for (const auto& [row, word] : invalid)
-    sheet.notes.push_back(
-        fmt::format("line {}: this row says \"{}\" and is omitted; if its reading is valid, delete these "
-                    "words in the file",
-                    sheet.line[row], word));
-  for (auto one = invalid.rbegin(); one != invalid.rend(); ++one) sheet::remove_row(sheet, one->first);
-}
-
 bool says_computed_row(const std::string& cell) { return computed_word(cell) != Names::kNoRow; }
 
 void leave_computed_rows(sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  const std::vector<std::size_t> named = results_at_the_end(sheet, table);
   std::vector<std::pair<std::size_t, std::string>> computed;
   std::set<std::size_t> rows;
   for (std::size_t k = 0; !sheet.rows.empty() && k < sheet.rows.front().size(); ++k)
     for (const std::size_t row : computed_rows_by(sheet, table, k))
       if (rows.insert(row).second) computed.emplace_back(row, sheet.rows[row][k]);
+  for (const std::size_t row : named)
+    if (rows.insert(row).second) computed.emplace_back(row, label_of(sheet.rows[row]));
   if (rows.empty() || rows.size() + table.first_data >= sheet.rows.size()) return;
   std::sort(computed.begin(), computed.end());
   for (const auto& [row, word] : computed)

@@ -7,10 +7,6 @@
 
 namespace vernier::importer {
 
-/// Removes the rows with a remark that says that the row is invalid ("ungültig", "discarded"). `sheet.notes`
-/// names line and remark of each. Throws InputError if every row says so.
-void leave_invalid_rows(sheet::Sheet& sheet, const sheet::SheetTable& table);
-
 /// True if a cell is the label of a row that a spreadsheet computes from the rows above: "Mittelwert" (mean),
 /// "Std. dev.", "Max".
 bool says_computed_row(const std::string& cell);

@@ -97,6 +97,7 @@ std::set<std::string> measured_axes(const std::vector<SheetColumn>& columns,
 }
 
 bool names_statistic(const sheet::Heading& heading) {
+  if (says_standard_deviation(heading.name)) return true;
   const std::vector<std::string> words = heading_words(heading.name);
   return std::any_of(words.begin(), words.end(),
                      [](const std::string& word) { return says_statistic(text::in_small_letters(word)); });

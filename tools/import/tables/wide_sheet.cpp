@@ -223,6 +223,12 @@ sheet::Heading heading_of_readings(sheet::Sheet& sheet, const sheet::SheetTable&
     // Readings that go as far as the positions do are positions.
     const double read = spread_of(sheet, table, runs.front().column);
     for (const std::size_t other : others) {
+      const std::vector<std::string> words = heading_words(table.headings[other].name);
+      const bool derived = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+        const std::string small = text::in_small_letters(word);
+        return says_statistic(small) || says_deviation(small);
+      });
+      if (derived) continue;  // a mean of the runs
       const double ratio = spread_of(sheet, table, other) > 0 ? read / spread_of(sheet, table, other) : 0;
       if (!(ratio > 0.9 && ratio < 1.1)) continue;
       all.measured = true;

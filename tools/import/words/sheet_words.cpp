@@ -96,6 +96,11 @@ bool says_target(const std::string& word) { return kTargetWords.contains(word); 
 bool says_measured(const std::string& word) { return kMeasuredWords.contains(word); }
 bool says_display(const std::string& word) { return kDisplayWords.contains(word); }
 bool says_statistic(const std::string& word) { return kStatisticWords.contains(word); }
+bool says_standard_deviation(std::string_view text) {
+  // Without the accented capital, which has no small letter here.
+  const std::string small = text::in_small_letters(text);
+  return small.find("cart-type") != std::string::npos || small.find("cart type") != std::string::npos;
+}
 bool says_correction(const std::string& word) {
   return kCorrectionWords.contains(word) ||
          std::any_of(kCorrectionStarts.begin(), kCorrectionStarts.end(),

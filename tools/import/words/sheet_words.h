@@ -22,6 +22,8 @@ bool says_display(const std::string& word);
 /// True for a statistic that a spreadsheet computes from its readings (a mean or a standard deviation), for
 /// example "Mittelwert".
 bool says_statistic(const std::string& word);
+/// True for the French words of a standard deviation: "Écart-type".
+bool says_standard_deviation(std::string_view text);
 bool says_deviation(const std::string& word);
 /// True for a correction, the opposite of a deviation: "Korrektur", "Korrekturtabelle".
 bool says_correction(const std::string& word);

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rows, cells and titles beside the readings: remarks, results below the table, computed columns.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/unit/import/table_reading.h"
+
+namespace vernier::sheet_remarks_test {
+
+using namespace vernier::importer;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+using vernier::importer_test::read;
+namespace {
+
+TEST(SheetRemarks, OmitTheCellOfTheRunThatTheyName) {
+  EXPECT_THAT(
+      read("X [mm];Lauf 1 [um];Lauf 2 [um];Bemerkung\n0;1;2;\n50;2;3;Lauf 2 ungültig\n100;3;4;\n"),
+      AllOf(HasSubstr("50,\"Lauf 2 ungültig\",1,50.002"), Not(HasSubstr("50.003")),
+            HasSubstr("100,,2,100.004"),
+            HasSubstr("note: line 3: this row says \"Lauf 2 ungültig\", and its cell of \"Lauf 2 [um]\" is "
+                      "omitted")));
+  EXPECT_THAT(read("X [mm];hin [um];zurück [um];Bemerkung\n0;1;2;\n50;2;3;zurück ungültig\n100;3;4;\n"),
+              AllOf(HasSubstr("50.002"), Not(HasSubstr("50.003"))));
+}
+
+TEST(SheetRemarks, AboutAnotherReadingOmitNothing) {
+  EXPECT_THAT(
+      read("X [mm];dX [um];Bemerkung\n0;1;\n50;2;Wiederholung, da erste ungültig war\n100;3;\n"),
+      AllOf(HasSubstr("50.002"), HasSubstr("is about another reading, and this row is read; if its own "
+                                           "reading is invalid, write \"ungültig\" alone")));
+  EXPECT_THAT(read("X [mm];dX [um];Bemerkung\n0;1;\n50;2;ungültig, durch Wiederholung ersetzt\n100;3;\n"),
+              Not(HasSubstr("50.002")));
+}
+
+TEST(SheetRemarks, ResultsBelowTheTableAreOmitted) {
+  EXPECT_THAT(read("X [mm],Deviation X [um]\n0,1\n50,2\n100,3\nMean,2\nA =,12.1\nReversal B,0.2\n"),
+              AllOf(StartsWith("X[mm],x[mm]\n0,0.001\n50,50.002\n100,100.003\nnote"),
+                    HasSubstr("line 6: the row \"A =\" is computed")));
+  EXPECT_THAT(read("X (mm);Écart X (um)\n0;1\n50;2\n100;3\nÉcart-type;1,2\n"),
+              StartsWith("X[mm],x[mm]\n0,0.001\n50,50.002\n100,100.003\nnote"));
+  // A mistyped number is no name of a result.
+  EXPECT_THAT(read("X [mm],Deviation X [um]\n0,1\n50,2\n100,3\n1OO,4\nMean,2\n"),
+              StartsWith("refused: s.csv:5: \"1OO\""));
+}
+
+TEST(SheetRemarks, RefuseACountBelowTheTable) {
+  const std::string rows = "X [mm];dX [um]\n0;1\n50;2\n100;3\n150;4\n200;3\n";
+  EXPECT_THAT(read(rows + "\n\n5;3,4\n"), StartsWith("refused: s.csv:9: \"5\": this row is behind an empty "
+                                                     "line, and \"X [mm]\" is not in the order"));
+  EXPECT_THAT(read(rows + "\n250;3\n"), HasSubstr("250,250.003"));
+  EXPECT_THAT(read(rows + "\n0;1\n"), HasSubstr("0,0.001\n"));
+}
+
+TEST(SheetRemarks, ADifferenceBesideRunsIsNoReading) {
+  const std::string sheet =
+      "X [mm],Run 1 [um],Run 2 [um],Difference [um],Average [um]\n0,-0.7,-0.3,0.4,-0.5\n50,1.8,2.2,0.4,2.0\n"
+      "100,1.3,1.7,0.4,1.5\n150,3.8,4.2,0.4,4.0\n";
+  EXPECT_THAT(read(sheet), AllOf(StartsWith("X[mm],run,x[mm]\n0,1,-0.0007\n"), HasSubstr("150,2,150.0042"),
+                                 HasSubstr("the column \"Difference [um]\" is the difference between \"Run 1 "
+                                           "[um]\" and \"Run 2 [um]\" and is omitted")));
+  SheetWords words;
+  words.left = {"Difference [um]"};
+  EXPECT_THAT(read(sheet, words), StartsWith("X[mm],run,x[mm]\n0,1,-0.0007\n"));
+}
+
+TEST(SheetRemarks, ATitleWithAnAxisStatesTheDirection) {
+  SheetWords words;
+  words.table = 2;
+  EXPECT_THAT(read("Achse X vor\nPos [mm];Abw [um]\n0;1\n50;2\n100;3\nAchse X zurück\nPos [mm];Abw "
+                   "[um]\n100;4\n50;3\n0;2\n",
+                   words),
+              AllOf(StartsWith("X[mm],x[mm],dirX\n100,100.004,-1\n"),
+                    HasSubstr("the title \"Achse X zurück\" states the approach direction -")));
+}
+
+}  // namespace
+}  // namespace vernier::sheet_remarks_test
