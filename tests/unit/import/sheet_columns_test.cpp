@@ -120,7 +120,7 @@ const Case kCases[] = {
     {"Milliradians", "X[mm];rx [mrad]\n1;2,5\n2;3,5\n", "X[mm],rx[mrad]\n1,2.5\n2,3.5\n"},
     {"ColumnARunAndSense", "X [mm];1+;1-;2+;2-\n0;1;2;3;4\n100;5;6;7;\n",
      "refused: s.csv:1: no unit: give it for all (--unit um) or for each, such as --deviation "
-     "\"X[um]=Deviation\""},
+     "\"X[um]=1+ to 2-\""},
     {"ColumnARunAndSenseWithUnits", "X [mm];1+ [µm];1- [µm];2+ [µm];2- [µm]\n0;1;2;3;4\n100;5;6;7;\n",
      "X[mm],dirX,run,x[mm]\n0,1,1,0.001\n100,1,1,100.005\n100,-1,1,100.006\n0,-1,1,0.002\n0,1,2,0.003\n100,1,"
      "2,100.007\n0,-1,2,0.004\n"},

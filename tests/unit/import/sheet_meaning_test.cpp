@@ -63,10 +63,12 @@ const Case kCases[] = {
     {"TheDecimalFactorOfATitle", "Abweichung in 0,01 mm\nX [mm];hin;zurück\n0;1;2\n100;3;4\n200;2;1\n",
      "X[mm],dirX,run,x[mm]\n0,1,1,0.01\n100,1,1,100.03\n"},
     {"AnUnknownFactorOfATitle", "Abweichung in 0,002 mm\nX [mm];hin;zurück\n0;1;2\n100;3;4\n200;2;1\n",
-     "refused: s.csv:2: \"Deviation\": the unit [0,002 mm] has a factor that is not known; convert the "
+     "refused: s.csv:2: \"hin to zurück\": the unit [0,002 mm] has a factor that is not known; convert the "
      "values"},
     {"AnUnknownFactorOfTheRuns", "X [mm];hin [0,5 um];zurück [0,5 um]\n0;1;2\n100;3;4\n200;2;1\n",
-     "refused: s.csv:1: \"Deviation\": the unit [0,5 um] has a factor that is not known; convert the values"},
+     "refused: s.csv:1: \"hin [0,5 um] to zurück [0,5 um]\": the unit [0,5 um] has a factor that is not "
+     "known; convert the "
+     "values"},
     {"TheUnitBelowAFactor", "Soll X;Abweichung X 1/100\nmm;mm\n0;1\n100;3\n200;2\n",
      "X[mm],x[mm]\n0,0.01\n100,100.03\n200,200.02\n"},
     {"TheUnitBelowAnotherUnit", "Soll X;Abweichung X Hundertstel\nmm;mm\n0;1\n100;3\n200;2\n",
@@ -203,10 +205,16 @@ TEST(SheetMeaningRemedy, NennmassAndIstmassWithoutAnAxisNameTheWorkingAssignment
 
 TEST(SheetMeaningRemedy, ErrorsForthAndBackWithoutAnAxisNameTheWorkingAssignment) {
   const std::string table = "Position;Fehler vor;Fehler zurück\n0;1,2;3,4\n100;2,2;4,1\n";
-  EXPECT_THAT(read(table), HasSubstr("such as --column \"X[mm]=Position\" --deviation \"X[um]=Deviation\""));
+  EXPECT_THAT(
+      read(table),
+      HasSubstr("such as --column \"X[mm]=Position\" --deviation \"X[um]=Fehler vor to Fehler zurück\""));
   SheetWords words;
   words.columns = {"X[mm]=Position"};
+  words.deviations = {"X[um]=Fehler vor to Fehler zurück"};
+  const std::string by_headings = read(table, words);
+  // The name in a profile, for any number of runs.
   words.deviations = {"X[um]=Deviation"};
+  EXPECT_EQ(read(table, words), by_headings);
   EXPECT_EQ(read(table, words),
             "X[mm],dirX,run,x[mm]\n0,1,1,0.0012\n100,1,1,100.0022\n100,-1,1,100.0041\n0,-1,1,0.0034\n");
 }

@@ -78,5 +78,33 @@ TEST(SheetRemarks, ATitleWithAnAxisStatesTheDirection) {
                     HasSubstr("the title \"Achse X zurück\" states the approach direction -")));
 }
 
+TEST(SheetRemarks, AnEmptyPositionIsNotFilledByTheOneAbove) {
+  EXPECT_THAT(read("X [mm];dX [um]\n0;1\n50;2\n100;3\n;2\n"),
+              AllOf(StartsWith("refused: s.csv:5"), HasSubstr("write the position into this cell"),
+                    Not(HasSubstr("--fill"))));
+  EXPECT_THAT(read("X [mm];dX [um]\n0;1\n;2\n100;3\n;2\n"), HasSubstr("give --fill \"X [mm]\""));
+}
+
+TEST(SheetRemarks, CellsWithUnitsNameTheUnit) {
+  EXPECT_THAT(read("X [mm];Abweichung\n0;-0,7 um\n50;1,8 um\n100;1,3 um\n"),
+              AllOf(StartsWith("refused: s.csv:2: \"-0,7 um\": the cells of \"Abweichung\" have a unit"),
+                    HasSubstr("write the unit in the heading ([um])")));
+}
+
+TEST(SheetRemarks, DegreesMinutesAndSecondsByTheHeading) {
+  EXPECT_THAT(
+      read("C Soll [\u00b0 ' \"];C Ist [\u00b0 ' \"]\n0 00 00;0 00 02\n30 00 00;30 30 00\n60 00 00;60 00 "
+           "04,5\n"),
+      StartsWith("C[deg],rz[deg]\n0,0.000555556\n30,30.5\n60,60.00125\n"));
+}
+
+TEST(SheetRemarks, TwoReadingsOfAnAxisAreNamedByTheirHeadings) {
+  EXPECT_THAT(
+      read("X [mm];Abweichung X [um];Fehler X [um]\n0;1;2\n50;2;5\n100;3;9\n"),
+      AllOf(StartsWith("refused: s.csv:1: \"Fehler X [um]\": this column and the column \"Abweichung X "
+                       "[um]\" both have the meaning x"),
+            HasSubstr("--leave \"Abweichung X [um]\" or --leave \"Fehler X [um]\"")));
+}
+
 }  // namespace
 }  // namespace vernier::sheet_remarks_test

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -53,10 +54,62 @@ std::optional<double> degrees_of(std::string cell) {
   return negative ? -value : value;
 }
 
+/// Degrees of three numbers separated by blanks: "30 00 05", "-1 30 00,5"; nullopt for other texts.
+std::optional<double> degrees_of_numbers(std::string cell) {
+  std::replace(cell.begin(), cell.end(), ',', '.');
+  const bool negative = cell.starts_with('-');
+  if (negative) cell.erase(0, 1);
+  const std::vector<std::string> parts = text::words_in(cell, " ");
+  constexpr std::size_t kParts = 3;  // degrees, minutes, seconds
+  if (parts.size() != kParts) return std::nullopt;
+  double value = 0, size = 1;
+  for (const std::string& part : parts) {
+    const auto number = text::parse_number(part);
+    if (!number || part.find_first_not_of("0123456789.") != std::string::npos) return std::nullopt;
+    if (size < 1 && *number >= kSixty) return std::nullopt;
+    value += *number * size;
+    size /= kSixty;
+  }
+  return negative ? -value : value;
+}
+
+/// True for the heading of a column of degrees, minutes and seconds: "C [° ' \"]", "C [DMS]".
+bool names_three_parts(const std::string& cell) {
+  const auto open = cell.find('['), close = cell.find(']');
+  if (open == std::string::npos || close == std::string::npos || close < open) return false;
+  const std::string unit = text::in_small_letters(cell.substr(open + 1, close - open - 1));
+  const auto has = [&](std::string_view sign) { return unit.find(sign) != std::string::npos; };
+  return unit == "dms" || unit == "gms" || unit == "deg min sec" || unit == "grad min sek" ||
+         (has(kDegreeSign) && (has("'") || has("\u2032")) && (has("\"") || has("''") || has("\u2033")));
+}
+
+/// Converts the cells of columns whose heading says that they have three numbers, and writes [deg] into it.
+bool convert_three_numbers(sheet::Sheet& sheet) {
+  bool any = false;
+  for (std::size_t row = 0; row < sheet.rows.size(); ++row)
+    for (std::size_t k = 0; k < sheet.rows[row].size(); ++k) {
+      std::string& heading = sheet.rows[row][k];
+      if (!names_three_parts(heading)) continue;
+      bool found = false;
+      for (std::size_t below = row + 1; below < sheet.rows.size(); ++below) {
+        std::string& cell = sheet.rows[below][k];
+        const auto value = degrees_of_numbers(cell);
+        if (!value) continue;
+        cell = text::fixed_text(*value, 9);  // 4 millionths of an arcsec
+        if (sheet.decimal_comma) std::replace(cell.begin(), cell.end(), '.', ',');
+        found = true;
+      }
+      if (found) heading.replace(heading.find('['), std::string::npos, "[deg]");
+      any |= found;
+    }
+  return any;
+}
+
 }  // namespace
 
 std::set<std::size_t> convert_degree_cells(sheet::Sheet& sheet) {
   std::set<std::size_t> converted;
+  const bool three = convert_three_numbers(sheet);
   for (auto& row : sheet.rows)
     for (std::size_t k = 0; k < row.size(); ++k) {
       if (row[k].find(kDegreeSign) == std::string::npos) continue;
@@ -66,7 +119,7 @@ std::set<std::size_t> convert_degree_cells(sheet::Sheet& sheet) {
       if (sheet.decimal_comma) std::replace(row[k].begin(), row[k].end(), '.', ',');
       converted.insert(k);
     }
-  if (!converted.empty())
+  if (three || !converted.empty())
     sheet.notes.push_back("cells with degrees, minutes and seconds are read as decimal degrees");
   return converted;
 }

@@ -51,7 +51,7 @@ double last_digit_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, 
 bool is_difference_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t difference,
                       std::size_t a, std::size_t b) {
   constexpr double kRoundings = 1.51;  // half a digit for each of three cells
-  constexpr std::size_t kFewest = 3;
+  constexpr std::size_t kFewest = 3;   // fewer rows agree by chance
   const double digit = kRoundings * last_digit_of(sheet, table, difference);
   std::size_t rows = 0;
   bool any = false;

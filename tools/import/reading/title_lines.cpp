@@ -96,7 +96,7 @@ void add_title_column(sheet::Sheet& sheet, sheet::SheetTable& table, const std::
                       const std::string& value) {
   for (std::size_t row = 0; row < sheet.rows.size(); ++row)
     sheet.rows[row].push_back(row >= table.first_data && !sheet::is_blank(sheet.rows[row]) ? value : "");
-  table.headings.push_back({heading, heading, "", ""});
+  table.headings.push_back({heading == "sense" ? "direction" : heading, heading, "", ""});
 }
 
 }  // namespace

@@ -17,15 +17,15 @@
 namespace vernier::importer {
 namespace {
 
-constexpr std::size_t kFewestTargets = 5;  // fewer targets show no order
-constexpr std::size_t kFewestNeighbours = 3;
+constexpr std::size_t kFewestTargets = 5;     // fewer targets show no order
+constexpr std::size_t kFewestNeighbours = 3;  // two of them show no order
 /// More turns than a quarter of the rows: the positions have no order (a grid, random positions).
 constexpr std::size_t kRowsPerTurn = 4;
 /// A multiple of a target agrees with an even division within a hundredth of the division.
 constexpr double kEven = 0.01;
 /// A step of a survey is at most three median steps, and a slipped cell is further away.
 constexpr double kLongStep = 3;
-constexpr double kPerMetre = 1000;
+constexpr double kPerMetre = 1000;  // mm in a metre
 
 constexpr std::size_t kFewestTyped = 3;  // fewer cells show no usual size
 /// Sum of the steps of the column with the lost signs, as a share of the sum without them. Values that are
@@ -36,14 +36,14 @@ constexpr double kSmoother = 0.08;
 constexpr double kSmootherAmong = 0.25;
 constexpr std::size_t kFewestChanges = 4;  // between cells with and without a sign
 
-constexpr std::size_t kMoreDecimals = 2;
+constexpr std::size_t kMoreDecimals = 2;  // one more is a digit of the same instrument
 constexpr std::size_t kMostFewCells = 2;  // judge_mixed_units() tests three cells and more
-constexpr double kOtherUnit = 1000;
+constexpr double kOtherUnit = 1000;       // um in a mm
 
 /// Ratio of two runs, from 10 or 100: the scatter of five readings is below a fifth of their size.
 constexpr double kRatioSpread = 1.25;
-constexpr double kResidualShare = 0.25;  // of the readings; unrelated runs have 1
-constexpr std::size_t kFewestCommon = 5;
+constexpr double kResidualShare = 0.25;   // of the readings; unrelated runs have 1
+constexpr std::size_t kFewestCommon = 5;  // fewer targets agree by chance
 constexpr std::size_t kMostScales = 200;  // more runs are labels of the rows
 
 std::size_t decimals_of(const std::string& cell, bool comma) {
@@ -107,7 +107,7 @@ std::optional<MisplacedTarget> misplaced_between(const std::vector<double>& valu
 std::optional<MisplacedTarget> misplaced_at_the_end(const std::vector<double>& values) {
   const std::size_t last = values.size() - 1;
   const double step = values[last - 1] - values[last - 2], expected = values[last - 1] + step;
-  constexpr std::size_t kSteps = 3;
+  constexpr std::size_t kSteps = 3;  // of an even division
   for (std::size_t j = 0; j < kSteps; ++j)
     if (std::abs(values[last - 1 - j] - values[last - 2 - j] - step) > kEven * std::abs(step))
       return std::nullopt;

@@ -122,10 +122,13 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
     return column.use == SheetColumn::Use::kLeft && column.name.empty() &&
            column.why.find("the axis of this deviation is not known") == 0;
   });
+  const auto at_open = static_cast<std::size_t>(open - columns.begin());
   if (open != columns.end() && !actual)
     return fmt::format("{}--deviation \"{}{}={}\"{}{}", position, name, open->unit.empty() ? "[um]" : "",
-                       table.headings[static_cast<std::size_t>(open - columns.begin())].text,
-                       position.empty() && axis == columns.end() ? " --set \"X[mm]=0\"" : "",
+                       table.headings[at_open].text,
+                       position.empty() && axis == columns.end()
+                           ? " " + option_of_positions(table, columns, guess, at_open)
+                           : "",
                        open->unit.empty() ? "; [um] is an example: state the unit of the values" : "");
   // A column that was left out has the options that read it.
   if (reading.empty())

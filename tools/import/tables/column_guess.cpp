@@ -232,4 +232,21 @@ Guess::Bare Guess::bare(const std::string& name) {
   return found;
 }
 
+std::string option_of_positions(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
+                                const Guess& guess, std::size_t deviation) {
+  std::optional<std::size_t> nearest;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name)) continue;
+    const std::vector<std::string> words = heading_words(table.headings[k].name);
+    const bool target = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+      return says_target(text::in_small_letters(word));
+    });
+    if (target && (!nearest || k < deviation)) nearest = k;
+  }
+  if (!nearest) return "--set \"X[mm]=0\"";
+  return fmt::format("--column \"X{}={}\"", columns[*nearest].unit.empty() ? "[mm]" : "",
+                     table.headings[*nearest].text);
+}
+
 }  // namespace vernier::importer

@@ -93,4 +93,11 @@ class Guess {
   const SheetWishes& wishes_;
 };
 
+/// Returns the option that makes a column the positions of the axis X for a deviation whose axis is not
+/// known:
+/// --column "X=Pos 1 [mm]", or --set "X[mm]=0" if no heading has a word for a position. The nearest column to
+/// the left of the deviation has its positions.
+std::string option_of_positions(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
+                                const Guess& guess, std::size_t deviation);
+
 }  // namespace vernier::importer

@@ -391,7 +391,9 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       leave(column, fmt::format("the axis of this deviation is not known: state the axis, --deviation "
                                 "\"X={}\"{}",
                                 table.headings[k].text,
-                                positions.empty() ? " --set \"X[mm]=0\" (with the position of X)" : ""));
+                                positions.empty() ? " " + option_of_positions(table, columns, guess, k) +
+                                                        " (with the position of X)"
+                                                  : ""));
     else if (deviation && !reading_of(column.name))
       leave(column, fmt::format("no reading of a measurement file is along {}: state the axis that it is "
                                 "parallel to, --deviation \"X={}\"{}",

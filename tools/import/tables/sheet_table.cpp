@@ -143,6 +143,24 @@ std::string angle_of(const std::string& axis, const text::Place& place) {
       "this column is a deviation in degrees: state its direction, for example --column \"rz[deg]=HEADING\"");
 }
 
+/// What the user does about an empty cell of a position: the value above applies only in a table that writes
+/// each position once for several rows.
+std::string remedy_of_empty_position(std::size_t empty, std::size_t filled, const std::string& heading) {
+  constexpr std::size_t kFewestEmpty = 2;        // a single one was forgotten
+  constexpr std::size_t kMostFilledForEach = 3;  // one empty cell for three filled ones, or more
+  const bool written_once = empty >= kFewestEmpty && kMostFilledForEach * empty >= filled;
+  return written_once ? "if the value above it applies, give --fill " + heading
+                      : "write the position into this cell";
+}
+
+std::string remedy_of_empty_position(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                     std::size_t column) {
+  std::size_t empty = 0, filled = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+    if (!sheet::is_blank(sheet.rows[row])) ++(sheet.rows[row][column].empty() ? empty : filled);
+  return remedy_of_empty_position(empty, filled, "\"" + table.headings[column].text + "\"");
+}
+
 /// A row with a reading needs the position of every axis that has a column.
 void refuse_readings_without_position(const ImportTable& table, const Guess& guess) {
   std::vector<SheetColumn> all;
@@ -151,16 +169,18 @@ void refuse_readings_without_position(const ImportTable& table, const Guess& gue
   const Readings readings(all);
   for (const ImportTable::Column& axis : table.columns) {
     if (!guess.is_axis(axis.name) || guess.may_be_no_axis(axis.name)) continue;
+    const auto empty = static_cast<std::size_t>(std::count(axis.cells.begin(), axis.cells.end(), ""));
     for (std::size_t row = 0; row < table.line.size(); ++row) {
       if (!axis.cells[row].empty()) continue;
       for (std::size_t k = 0; k < all.size(); ++k)
         if (readings.contain(all[k]) && !table.columns[k].cells[row].empty())
           throw text::InputError(
               {table.file, table.line[row]}, axis.name,
-              "the position of this axis is empty in a row with a reading; if the value above "
-              "it applies, give --fill with the heading of the column; if the readings are shifted by one "
-              "row "
-              "against the positions, move their column");
+              fmt::format(
+                  "the position of this axis is empty in a row with a reading; {}; if the readings are "
+                  "shifted by one row against the positions, move their column",
+                  remedy_of_empty_position(empty, axis.cells.size() - empty,
+                                           "with the heading of the column")));
     }
   }
 }
@@ -207,6 +227,19 @@ void refuse_magnitudes(const sheet::Sheet& sheet, const sheet::SheetTable& table
   }
 }
 
+/// Refuses a column without a unit whose cells have one.
+void refuse_units_in_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t k) {
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const std::string& cell = sheet.rows[row][k];
+    if (sheet::plain_number(cell, sheet.decimal_comma)) return;
+    if (const auto both = sheet::number_and_unit(cell, sheet.decimal_comma))
+      throw text::InputError({sheet.file, sheet.line[row]}, cell,
+                             fmt::format("the cells of \"{}\" have a unit: write the unit in the heading "
+                                         "([{}]), numbers alone in the cells",
+                                         table.headings[k].text, both->second));
+  }
+}
+
 /// Refuses positions and readings without a unit, with the options that state the units.
 void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                           const std::vector<SheetColumn>& columns, const Readings& readings,
@@ -231,6 +264,7 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
                           : fmt::format("[{}] is no known unit", unknown),
                       deviation ? "deviation" : "column", column.name, table.headings[k].text,
                       format::known_units()));
+    refuse_units_in_cells(sheet, table, k);
     const double largest = largest_value(sheet, table, k);
     const std::string unit =
         deviation ? unit_of_deviation(columns, column.name, largest) : unit_to_say(column.name, columns);
@@ -346,13 +380,23 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
     if (sheet::is_blank(cells)) continue;
     result.line.push_back(sheet.line[row]);
   }
+  std::map<std::string, std::size_t> made_of;  // column by the name of its values
   const auto twice = [&](std::size_t k, const std::string& name) {
-    throw text::InputError(heading, table.headings[k].text,
-                           fmt::format("this column and another column both have the meaning {}; leave out "
-                                       "one of the two columns, for example --leave {}",
-                                       name, std::to_string(k + 1)));
+    const auto option = [&](std::size_t one) {
+      // A heading that occurs twice is named by the number of its column.
+      const auto same =
+          std::count_if(table.headings.begin(), table.headings.end(),
+                        [&](const sheet::Heading& other) { return other.text == table.headings[one].text; });
+      return same > 1 ? fmt::format("--leave {}", std::to_string(one + 1))
+                      : fmt::format("--leave \"{}\"", table.headings[one].text);
+    };
+    throw text::InputError(
+        heading, table.headings[k].text,
+        fmt::format(
+            "this column and the column \"{}\" both have the meaning {}: leave out the one that is no "
+            "reading, {} or {}",
+            table.headings[made_of.at(name)].text, name, option(made_of.at(name)), option(k)));
   };
-  std::set<std::string> names;
   std::map<std::string, std::size_t> axis_column;
   for (std::size_t k = 0; k < columns.size(); ++k)
     if (columns[k].use == SheetColumn::Use::kColumn) axis_column.emplace(columns[k].name, k);
@@ -395,7 +439,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
                              "no reading of a measurement file is along this axis; state the axis that it is "
                              "parallel to, such as --deviation \"X=" +
                                  table.headings[k].text + "\"");
-    if (!names.insert(made.name).second) twice(k, made.name);
+    if (!made_of.emplace(made.name, k).second) twice(k, made.name);
     for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
       const auto& cells = sheet.rows[row];
       if (sheet::is_blank(cells)) continue;
@@ -407,10 +451,10 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
           throw text::InputError(
               {sheet.file, sheet.line[row]}, column.name,
               fmt::format(
-                  "the cell of the position is empty in a row with a deviation; if the value above it "
-                  "applies, give --fill \"{}\"; if the row is no measurement (a mean, a sum), delete the "
-                  "row; if the deviations are shifted by one row against the positions, move their column",
-                  table.headings[base].text));
+                  "the cell of the position is empty in a row with a deviation; {}; if the row is no "
+                  "measurement (a mean, a sum), delete the row; if the deviations are shifted by one row "
+                  "against the positions, move their column",
+                  remedy_of_empty_position(sheet, table, base)));
         // Nine decimals are below every instrument: adding leaves no tail of binary digits.
         text = text::fixed_text(mm(at, position_unit) + sign * mm(text, column.unit), 9);
       }

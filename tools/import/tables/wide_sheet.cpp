@@ -238,9 +238,8 @@ sheet::Heading heading_of_readings(sheet::Sheet& sheet, const sheet::SheetTable&
   sheet::Heading heading;
   heading.name = std::string(all.measured && !all.deviation ? "Actual" : "Deviation") +
                  (all.axis.empty() ? "" : " " + all.axis);
-  heading.text = heading.name + (all.length   ? all.turned ? " (positive = short)" : " (positive = long)"
-                                 : all.turned ? " (nominal-actual)"
-                                              : "");
+  // The messages name the readings by the headings of the runs, which state the sign too.
+  heading.text = table.headings[runs.front().column].text + " to " + table.headings[runs.back().column].text;
   heading.unit = unknown.empty() ? all.unit : "";
   heading.unknown_unit = unknown;
   return heading;
@@ -411,7 +410,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   const sheet::Heading readings = heading_of_readings(sheet, table, runs, others);
   std::vector<sheet::Heading> headings;
   for (const std::size_t k : others) headings.push_back(table.headings[k]);
-  if (directed) headings.push_back({"sense", "sense", "", ""});
+  if (directed) headings.push_back({"direction", "sense", "", ""});
   headings.push_back({format::columns::kRun, format::columns::kRun, "", ""});
   headings.push_back(readings);
   std::vector<std::vector<std::string>> rows;

@@ -17,7 +17,7 @@ const WordSet kTargetWords = {
     "position",     "pos",      "set",          "ziel",         "achse",    "axis",         "machine",
     "maschine",     "nom",      "sollposition", "zielposition", "nennmaß",  "nennmass",     "nennwert",
     "nennposition", "sollmaß",  "sollmass",     "kommandiert",  "befohlen", "programmiert", "programmed",
-    "demand",       "setpoint", "vorgabe",      "vorgabewert",  "cote",     "consigne"};
+    "demand",       "setpoint", "vorgabe",      "vorgabewert",  "cote",     "consigne",     "cible"};
 const WordSet kMeasuredWords = {
     "ist",  "istwert",   "istposition", "istmaß",       "istmass",  "measured",   "actual", "act",
     "meas", "mess",      "messwert",    "gemessen",     "reading",  "tracker",    "laser",  "read",
@@ -52,9 +52,9 @@ const WordSet kStatisticWords = {"mittel", "mittelwert", "mittelwerte", "mittler
                                  "écart-type", "mittelwerts",
                                  // Signs of a mean and of a standard deviation; Ø has no small letter here.
                                  "x\u0304", "x\u0305", "ø", "Ø", "⌀", "∅", "σ", "2σ", "3σ"};
-const WordSet kForthWords = {"1",    "+1",       "+",       "forward", "fwd",      "forth", "up",
-                             "pos",  "positive", "positiv", "vor",     "vorwärts", "hin",   "auf",
-                             "plus", "cw",       "\u2191",  "\u2192",  "hinfahrt", "hinweg"};
+const WordSet kForthWords = {"1",    "+1",       "+",       "forward", "fwd",      "forth",    "up",
+                             "pos",  "positive", "positiv", "vor",     "vorwärts", "hin",      "auf",
+                             "plus", "cw",       "aller",   "\u2191",  "\u2192",   "hinfahrt", "hinweg"};
 const WordSet kBackWords = {"-1",
                             "-",
                             "backward",
@@ -78,6 +78,7 @@ const WordSet kBackWords = {"-1",
                             "rückweg",
                             "her",
                             "ab",
+                            "retour",
                             "minus",
                             "ccw",
                             "\u2212",
@@ -163,7 +164,7 @@ std::string axis_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& t
   };
   for (std::size_t k = 0; k < words.size(); ++k) {
     const std::string small = text::in_small_letters(words[k]);
-    if (small != "axis" && small != "achse") continue;
+    if (small != "axis" && small != "achse" && small != "axe") continue;
     // "Achse" and "X" may be in separate cells.
     const std::size_t next = k + 1 < words.size() && words[k + 1].empty() ? k + 2 : k + 1;
     if (k > 0 && letter(words[k - 1]))
