@@ -75,5 +75,14 @@ TEST(SideRuns, AFrenchTableOfSeveralAxes) {
               AllOf(StartsWith("refused"), HasSubstr("the rows belong to the axes X, Y of this column")));
 }
 
+TEST(SideRuns, OfSeveralAxesInOneTable) {
+  SheetWords words;
+  words.constants = {"X[mm]=0", "Y[mm]=250"};
+  EXPECT_THAT(read("Achse;Lauf 1 [um];Lauf 2 [um];Pos [mm]\nX;1;2;0\nX;2;3;50\nY;4;5;0\nY;6;7;50\n", words),
+              StartsWith("X[mm],Y[mm],run,x[mm],y[mm]\n0,250,1,0.001,\n50,250,1,50.002,\n0,0,1,,0.004\n"));
+  EXPECT_THAT(read("Achse;Lauf 1 [um];Lauf 2 [um]\nX;1;2\nX;2;3\nY;4;5\nY;6;7\n"),
+              AllOf(StartsWith("refused"), Not(HasSubstr("--set \"X[mm]=0\""))));
+}
+
 }  // namespace
 }  // namespace vernier::side_runs_test

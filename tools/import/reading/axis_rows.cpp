@@ -129,11 +129,14 @@ void require_positions(const sheet::Sheet& sheet, const sheet::SheetTable& table
 
 }  // namespace
 
-bool unfold_axes(sheet::Sheet& sheet, sheet::SheetTable& table, SheetWishes& wishes) {
+bool unfold_axes(sheet::Sheet& sheet, sheet::SheetTable& table, SheetWishes& wishes, AxisCells cells_of) {
   if (!table.has_headings) return false;
   const Guess guess(wishes);
   const auto rows = axis_rows(sheet, table, guess);
   if (!rows) return false;
+  if (cells_of == AxisCells::kInEachRow)
+    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+      if (!sheet::is_blank(sheet.rows[row]) && sheet.rows[row][rows->column].empty()) return false;
   std::vector<PerAxis> kinds;
   std::size_t targets = 0, readings = 0, target = 0;
   for (std::size_t k = 0; k < table.headings.size(); ++k) {
@@ -203,6 +206,24 @@ bool unfold_axes(sheet::Sheet& sheet, sheet::SheetTable& table, SheetWishes& wis
            std::find(rows->axes.begin(), rows->axes.end(), one.name) != rows->axes.end();
   });
   return true;
+}
+
+void refuse_unread_axes(sheet::Sheet& sheet, const sheet::SheetTable& table, const SheetWishes& wishes,
+                        bool assigned) {
+  if (!table.has_headings) return;
+  const Guess guess(wishes);
+  const auto rows = axis_rows(sheet, table, guess);
+  if (!rows || rows->axes.size() < 2) return;
+  for (const sheet::Heading& heading : table.headings)
+    if (guess.is_axis(guess.column(heading).name)) return;  // the positions of each axis have a column
+  const std::string& heading = table.headings[rows->column].text;
+  const std::string text = fmt::format(
+      "this column names the axes {}, but the rows cannot be read axis by axis: this needs one column of "
+      "positions and one of deviations without an axis in their headings ({};Soll [mm];Abweichung [um]). "
+      "Change the headings, or write a table for each axis",
+      text::joined(rows->axes, ", "), heading);
+  if (!assigned) throw text::InputError({sheet.file, sheet.line[table.heading_row]}, heading, text);
+  sheet.notes.push_back(fmt::format("\"{}\": {}", heading, text));
 }
 
 }  // namespace vernier::importer

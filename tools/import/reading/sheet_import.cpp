@@ -293,10 +293,18 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   named.insert(named.end(), words.columns.begin(), words.columns.end());
   named.insert(named.end(), words.deviations.begin(), words.deviations.end());
   leave_differences(result.sheet, result.table, named);
-  const bool unfolded_axes = !axes_left && unfold_axes(result.sheet, result.table, result.wishes);
+  bool unfolded_axes =
+      !axes_left && unfold_axes(result.sheet, result.table, result.wishes, AxisCells::kAboveToo);
   stack_runs(result.sheet, result.table);
   result.runs = unfold_runs(result.sheet, result.table);
   split_runs(result.sheet, result.table);
+  // Runs side by side are one column of readings now.
+  if (!axes_left && !unfolded_axes) {
+    unfolded_axes = unfold_axes(result.sheet, result.table, result.wishes, AxisCells::kInEachRow);
+    const bool assigned =
+        !words.columns.empty() || !words.deviations.empty() || !result.wishes.assignments.empty();
+    if (!unfolded_axes) refuse_unread_axes(result.sheet, result.table, result.wishes, assigned);
+  }
   if (result.wishes.format.table && result.runs == 0)
     add_run_of_title(result.sheet, result.table, result.wishes.constants);
   for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);

@@ -129,8 +129,7 @@ bool name_readings(std::vector<SideHeading>& list) {
                                  ? std::nullopt
                                  : format::find_unit(position->rest.unit);
     if (!unit || !of_position || unit->factor >= of_position->factor) return false;
-    one.rest.name = "Deviation";
-    one.rest.text = "Deviation [" + one.rest.unit + "]";
+    one.rest.name = "Deviation";  // the text remains that of the file
   }
   return true;
 }
@@ -208,7 +207,12 @@ void stack(sheet::Sheet& sheet, sheet::SheetTable& table, SideGroups& groups) {
     sheet.notes.push_back(fmt::format("the column \"{}\" is computed from the runs beside it and is omitted",
                                       table.headings[k].text));
   std::vector<sheet::Heading> headings;
-  for (const SideHeading& one : groups.of[groups.order.front()]) headings.push_back(one.rest);
+  const std::vector<SideHeading>&first = groups.of[groups.order.front()],
+        &last = groups.of[groups.order.back()];
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    headings.push_back(first[i].rest);
+    if (first[i].rest.text != last[i].rest.text) headings.back().text += " to " + last[i].rest.text;
+  }
   if (senses) headings.push_back({"direction", "sense", "", ""});
   if (runs) headings.push_back({format::columns::kRun, format::columns::kRun, "", ""});
   std::size_t width = headings.size();

@@ -449,7 +449,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
                                      : constant_cell(*still, sheet.decimal_comma);
         if (at.empty())
           throw text::InputError(
-              {sheet.file, sheet.line[row]}, column.name,
+              {sheet.file, sheet.line[row]}, table.headings[base].text,
               fmt::format(
                   "the cell of the position is empty in a row with a deviation; {}; if the row is no "
                   "measurement (a mean, a sum), delete the row; if the deviations are shifted by one row "

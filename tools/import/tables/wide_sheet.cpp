@@ -353,6 +353,16 @@ std::map<int, std::size_t> positions_by_direction(sheet::Sheet& sheet, sheet::Sh
   return found;
 }
 
+/// "Pos" beside runs with numbers is a position, at the left or behind them.
+void take_positions_out(std::vector<RunColumn>& runs, std::vector<std::size_t>& others) {
+  const bool numbered =
+      std::any_of(runs.begin(), runs.end(), [](const RunColumn& one) { return !one.run.empty(); });
+  for (const RunColumn& one : runs)
+    if (numbered && one.pos && one.run.empty()) others.push_back(one.column);
+  std::erase_if(runs, [&](const RunColumn& one) { return numbered && one.pos && one.run.empty(); });
+  std::sort(others.begin(), others.end());
+}
+
 /// Notes a run whose first reading alone is empty: the first sign of a column that is shifted by a row and
 /// cut off at the end.
 void note_late_run(sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
@@ -388,6 +398,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
       others.push_back(k);
     }
   }
+  take_positions_out(runs, others);
   if (others.empty() || !belong_together(runs)) return 0;
   const std::map<int, std::size_t> positions = positions_by_direction(sheet, table, others);
   number_runs(sheet, table, runs);
