@@ -29,6 +29,16 @@ TEST(TypedCells, RefusesManyLostDecimalSigns) {
   EXPECT_THAT(read(rows, words), AllOf(HasSubstr("100,100.013"), HasSubstr("note: line 2, \"-07\"")));
 }
 
+TEST(TypedCells, RefusesACellThatBeginsWithZeroAmongDecimals) {
+  EXPECT_THAT(read("X [mm];dX [um]\n0;3,1\n50;3,4\n100;1,8\n150;-04\n200;-37\n250;-84\n"),
+              StartsWith("refused: s.csv:5: \"-04\": this cell and 2 more"));
+}
+
+TEST(TypedCells, ReadsNumbersWithTwoDigits) {
+  EXPECT_THAT(read("X [mm];dX [um]\n0;-6\n50;9,9\n100;12\n150;-3,4\n200;-15\n250;7,1\n300;18\n350;-11\n"),
+              StartsWith("X[mm]"));
+}
+
 TEST(TypedCells, ReadsWholeNumbersAmongDecimals) {
   // Trailing zeros cut off, and values with two digits in a curve of the axis.
   EXPECT_THAT(read("X [mm];dX [um]\n0;0,3\n50;12\n100;0,4\n150;15\n200;11,7\n250;13\n300;0,5\n350;12,5\n"),
@@ -66,6 +76,8 @@ TEST(TypedCells, RefusesTargetsInMetresBelowMillimetres) {
       "X [mm];dX [um]\n0;1\n50;2\n100;3\n150;4\n200;3\n250;2\n0,300;3\n0,350;2\n0,400;1\n";
   EXPECT_THAT(read(rows), AllOf(StartsWith("refused: s.csv:8: \"0,300\": in this line and in 2 more"),
                                 HasSubstr("(m and mm)")));
+  EXPECT_THAT(read("X [mm];dX [um]\n0;1\n50;2\n100;3\n0,150;4\n0,200;3\n0,250;2\n0,300;3\n"),
+              StartsWith("refused: s.csv:5: \"0,150\": in this line and in 3 more"));
   // Fine steps near zero have more decimals too.
   EXPECT_THAT(read("X [mm];dX [um]\n0;1\n0,005;2\n0,010;3\n50;4\n100;3\n150;2\n200;3\n250;2\n"),
               StartsWith("X[mm]"));

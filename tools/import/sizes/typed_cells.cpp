@@ -23,17 +23,18 @@ constexpr std::size_t kFewestNeighbours = 3;  // two of them show no order
 constexpr std::size_t kRowsPerTurn = 4;
 /// A multiple of a target agrees with an even division within a hundredth of the division.
 constexpr double kEven = 0.01;
+/// Ten times the second of two equal steps is four gaps of two steps away; targets in no order are nearer.
+constexpr double kFarGaps = 3.5;
 /// A step of a survey is at most three median steps, and a slipped cell is further away.
 constexpr double kLongStep = 3;
 constexpr double kPerMetre = 1000;  // mm in a metre
 
 constexpr std::size_t kFewestTyped = 3;  // fewer cells show no usual size
-/// Sum of the steps of the column with the lost signs, as a share of the sum without them. Values that are
-/// written with two digits (1.8, 13) have a share of 0.24 in random order, and 0.11 in a column that
-/// increases by the factor 2 from row to row.
-constexpr double kSmoother = 0.08;
-/// The same, if the cells without a decimal sign are not all larger than the others, or begin with 0.
-constexpr double kSmootherAmong = 0.25;
+/// Steps between cells with and without a decimal sign, as a share of the steps without the lost signs. Noise
+/// that is written with two digits (1.8, 13) has a share of 0.27.
+constexpr double kSmoother = 0.1;
+/// The same, if a cell begins with 0: "-07".
+constexpr double kSmootherWithZero = 0.5;
 constexpr std::size_t kFewestChanges = 4;  // between cells with and without a sign
 
 constexpr std::size_t kMoreDecimals = 2;  // one more is a digit of the same instrument
@@ -82,12 +83,6 @@ std::size_t turns_of(const std::vector<double>& values) {
   return turns;
 }
 
-double sum_of_steps(const std::vector<double>& values) {
-  double sum = 0;
-  for (std::size_t i = 1; i < values.size(); ++i) sum += std::abs(values[i] - values[i - 1]);
-  return sum;
-}
-
 /// A target between two others, whose multiple is in order.
 std::optional<MisplacedTarget> misplaced_between(const std::vector<double>& values, std::size_t i) {
   std::vector<double> beside;
@@ -95,11 +90,17 @@ std::optional<MisplacedTarget> misplaced_between(const std::vector<double>& valu
     if (j != i) beside.push_back(values[j]);
   if (beside.size() < kFewestNeighbours || !in_order(beside)) return std::nullopt;
   const auto [least, most] = std::minmax(values[i - 1], values[i + 1]);
+  const double gap = most - least, middle = least + gap / 2;
   if (values[i] >= least && values[i] <= most) return std::nullopt;
   const bool again = std::count(values.begin(), values.end(), values[i]) > 1;
-  for (const double times : {0.1, 0.01, 0.001, 10.0, kPerMetre})
-    if (const double value = values[i] * times; !again && value > least && value < most)
+  const double far = std::max(values[i] - most, least - values[i]) / gap;
+  for (const double times : {0.1, 0.01, 0.001, 10.0, kPerMetre}) {
+    // A value that is too small is never far from its neighbours: it needs an even division.
+    const bool agrees = times < 1 ? far > kFarGaps : std::abs(values[i] * times - middle) <= kEven * gap;
+    const double value = values[i] * times;
+    if (!again && agrees && value > least && value < most)
       return MisplacedTarget{i, times, values[i - 1], values[i + 1]};
+  }
   return std::nullopt;
 }
 
@@ -171,7 +172,13 @@ std::optional<SizeDoubt> metres_doubt(const sheet::Sheet& sheet, const std::vect
       if (std::abs(list[i] - list[i - 1]) > kLongStep * usual) return true;
     return false;
   };
-  if (jump(in_order) || !jump(as_written)) return std::nullopt;
+  const auto even = [&](const std::vector<double>& list) {
+    for (std::size_t i = 1; i < list.size(); ++i)
+      if (std::abs(std::abs(list[i] - list[i - 1]) - usual) > kEven * usual) return false;
+    return true;
+  };
+  const bool alone_even = even(in_order) && !even(as_written);
+  if (jump(in_order) || (!jump(as_written) && !alone_even)) return std::nullopt;
   return SizeDoubt{
       k, sheet.line[small.front()->row], sheet.rows[small.front()->row][k],
       fmt::format("in this line and in {} more the positions have more decimals and are {:.6g} to {:.6g}, in "
@@ -282,6 +289,8 @@ void note_few_cells_of_other_unit(sheet::Sheet& sheet, const sheet::SheetTable& 
   for (const TypedCell& one : cells) ++count[one.decimals];
   if (count.size() < 2 || cells.size() < 2 * kFewestTyped) return;
   const std::size_t most = count.rbegin()->first, fewer = std::next(count.rbegin())->first;
+  // Numbers with as many digits as they need have more decimals near zero. A zero at the end may be cut off.
+  if (count.size() - count.count(0) > 2) return;
   if (count.rbegin()->second > kMostFewCells || most < fewer + kMoreDecimals) return;
   std::vector<double> sizes;
   for (const TypedCell& one : cells)
@@ -313,36 +322,38 @@ std::optional<SizeDoubt> lost_signs_doubt(const sheet::Sheet& sheet, const std::
   std::size_t decimals = 0, changes = 0;
   for (const TypedCell& one : cells) decimals = std::max(decimals, one.decimals);
   if (decimals == 0) return std::nullopt;
-  std::vector<double> as_written, with_signs;
   std::vector<std::size_t> without;
-  double least = 0, most = 0;  // of the cells without a sign, and of those with one
-  bool zero = false, before = false;
+  double as_written = 0, with_signs = 0;  // sums of the steps between cells with and without a sign
+  bool zero = false, padded = false;      // cells without and with a sign that begin with 0 and a digit
+  const TypedCell* before = nullptr;
+  const auto is_lost = [](const TypedCell& one) { return one.decimals == 0 && one.value != 0; };
+  const double scale = std::pow(10, decimals);
   for (const TypedCell& one : cells) {
-    const bool lost = one.decimals == 0 && one.value != 0;
-    if (!lost && one.value != 0 && one.decimals != decimals) return std::nullopt;
-    const double size = std::abs(one.value);
-    if (lost) {
-      least = without.empty() ? size : std::min(least, size);
+    if (one.value != 0 && one.decimals != 0 && one.decimals != decimals) return std::nullopt;
+    if (is_lost(one)) {
       without.push_back(one.row);
       zero |= begins_with_zero(sheet.rows[one.row][k]);
     } else {
-      most = std::max(most, size);
+      padded |= begins_with_zero(sheet.rows[one.row][k]);
     }
-    changes += !as_written.empty() && lost != before ? 1 : 0;
-    before = lost;
-    as_written.push_back(one.value);
-    with_signs.push_back(lost ? one.value / std::pow(10, decimals) : one.value);
+    if (before != nullptr && is_lost(*before) != is_lost(one)) {
+      ++changes;
+      as_written += std::abs(one.value - before->value);
+      with_signs +=
+          std::abs(one.value / (is_lost(one) ? scale : 1) - before->value / (is_lost(*before) ? scale : 1));
+    }
+    before = &one;
   }
-  if (without.size() < kFewestTyped || cells.size() < without.size() + kFewestTyped) return std::nullopt;
-  const double limit = zero || least < most ? kSmootherAmong : kSmoother;
-  if (changes < kFewestChanges || !(sum_of_steps(with_signs) < limit * sum_of_steps(as_written)))
-    return std::nullopt;
+  if (without.empty() || cells.size() < without.size() + kFewestTyped) return std::nullopt;
+  const bool many = without.size() >= kFewestTyped && changes >= kFewestChanges;
+  if (!(zero && !padded) && !many) return std::nullopt;
+  if (!(with_signs < (zero ? kSmootherWithZero : kSmoother) * as_written)) return std::nullopt;
   return SizeDoubt{
       k, sheet.line[without.front()], sheet.rows[without.front()][k],
       fmt::format("this cell and {} more of the column have no decimal sign, and 1/{:.0f} of their values "
                   "agrees with the cells before and behind them: the decimal signs are probably lost; write "
                   "the decimal sign into these cells",
-                  without.size() - 1, std::pow(10, decimals))};
+                  without.size() - 1, scale)};
 }
 
 }  // namespace
