@@ -217,7 +217,7 @@ std::string doubt_of_curve(const Evidence& evidence, const Pool& pool, const std
 /// A square of a speed is a shape only with three speeds, standstill included. With two speeds it marks the
 /// rows of one speed, and everything else that these rows have in common is the same column.
 std::string doubt_of_square(const Evidence& evidence, const Pool& pool, std::size_t item) {
-  constexpr int kSpeedsOfASquare = 3;
+  constexpr int kSpeedsOfASquare = 3;  // two always lie on a parabola through zero
   const effects::Candidate& candidate = pool.candidate(item);
   const auto drivers = drivers_of(evidence.machine(), candidate);
   if (drivers.size() != 1 ||
@@ -241,9 +241,10 @@ std::string doubt_of_square(const Evidence& evidence, const Pool& pool, std::siz
       candidate.spoken, speeds, evidence.machine().axes[axis].name);
 }
 
-bool is_effect(const Pool& pool, std::size_t item, std::string_view id) {
+/// True for a reversal error that builds up over a travel.
+bool builds_up(const Pool& pool, std::size_t item) {
   const effects::Choice& choice = pool.candidate(item).choice;
-  return !pool.is_custom(item) && choice.effect != nullptr && choice.effect->id == id;
+  return !pool.is_custom(item) && choice.effect != nullptr && choice.effect->builds_up;
 }
 
 /// True if `item` is a reversal error of the axis of `choice`, at the same location.
@@ -282,7 +283,7 @@ std::string doubt_of_reversal(const Evidence& evidence, const Pool& pool,
     reversals += reversal ? 1 : 0;
     (reversal || curve ? pieces : others).push_back(one);
   }
-  const bool varies = is_effect(pool, item, "backlash") && pool[item].columns.cols() > 1;
+  const bool varies = pool[item].columns.cols() > 1;
   if (!varies && (reversals < 2 || has_travel(evidence))) return {};
 
   const Eigen::ArrayXd answer = evidence.response(evidence.index_of(*choice.place)).array();
@@ -296,8 +297,7 @@ std::string doubt_of_reversal(const Evidence& evidence, const Pool& pool,
   const double found = own_part(evidence, pool.columns(pieces), beside).explained();
   for (std::size_t one = 0; one < pool.size(); ++one) {
     const effects::Choice& other = pool.candidate(one).choice;
-    if (!is_effect(pool, one, "hysteresis") || other.axis != choice.axis || other.place != choice.place)
-      continue;
+    if (!builds_up(pool, one) || other.axis != choice.axis || other.place != choice.place) continue;
     if (own_part(evidence, pool[one].columns, beside).explained() <
         (1 - evidence.thresholds().shape.minor) * found)
       continue;
@@ -327,21 +327,21 @@ Eigen::MatrixXd before_first_reversal(const Evidence& evidence, std::size_t axis
   return columns;
 }
 
-/// Beside a reversal error that builds up, another reversal error of the same axis is a piece of it: nobody
-/// knows the exact function of the travel. An effect that only the readings before the first recorded
+/// Beside a reversal error that builds up, another reversal error of the same axis is a piece of it: its
+/// exact function of the travel is not known. An effect that only the readings before the first recorded
 /// reversal show can be the state of the axis before. A step of the instrument can be the state of the axis
 /// at the begin of a run, which a travel that is computed from the rows does not contain.
 std::string doubt_beside_hysteresis(const Evidence& evidence, const Pool& pool,
                                     const std::vector<std::size_t>& items, std::size_t item) {
   for (const std::size_t other : items) {
-    if (other == item || !is_effect(pool, other, "hysteresis")) continue;
-    if (is_effect(pool, item, "hysteresis") && item < other) continue;
+    if (other == item || !builds_up(pool, other)) continue;
+    if (builds_up(pool, item) && item < other) continue;
     if (is_piece_of(evidence, pool, item, pool.candidate(other).choice))
       return fmt::format("{} can be a part of the reversal error that builds up ({})",
                          pool.candidate(item).spoken, pool.candidate(other).spoken);
     if (has_travel(evidence)) continue;
     const auto& place = pool.candidate(item).choice.place;
-    const bool step = is_effect(pool, item, "base-drift") &&
+    const bool step = !pool.candidate(item).choice.runs.empty() &&
                       (!place || moves_alike(evidence, *place, *pool.candidate(other).choice.place));
     std::vector<std::size_t> others;
     for (const std::size_t one : items)
@@ -428,10 +428,9 @@ std::string doubt_of_shape(const Evidence& evidence, const Pool& pool, const std
     if (!doubt.empty()) return doubt;
   }
   if (const std::string doubt = doubt_of_square(evidence, pool, item); !doubt.empty()) return doubt;
-  const bool builds_up =
-      std::ranges::any_of(items, [&](std::size_t one) { return is_effect(pool, one, "hysteresis"); });
-  if (const std::string doubt = builds_up ? doubt_beside_hysteresis(evidence, pool, items, item)
-                                          : doubt_of_reversal(evidence, pool, items, item);
+  const bool built_up = std::ranges::any_of(items, [&](std::size_t one) { return builds_up(pool, one); });
+  if (const std::string doubt = built_up ? doubt_beside_hysteresis(evidence, pool, items, item)
+                                         : doubt_of_reversal(evidence, pool, items, item);
       !doubt.empty())
     return doubt;
   // Without a given uncertainty the residual is not known to be noise. It may contain other
@@ -456,7 +455,7 @@ bool stands_beside(const Evidence& evidence, const Pool& pool, std::size_t item,
   if (drivers.empty() || pool.is_custom(item) || !std::all_of(drivers.begin(), drivers.end(), is_of_motion))
     return false;
   return std::none_of(doubtful.begin(), doubtful.end(), [&](std::size_t other) {
-    if (is_effect(pool, item, "hysteresis") && other != item &&
+    if (builds_up(pool, item) && other != item &&
         is_piece_of(evidence, pool, other, pool.candidate(item).choice))
       return false;
     const auto others = drivers_of(evidence.machine(), pool.candidate(other));

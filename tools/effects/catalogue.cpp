@@ -90,6 +90,8 @@ class CatalogueReader {
       while (!rest.empty()) now.impostors.push_back(next_word(rest));
     else if (key == "rare")
       now.rare = true;
+    else if (key == "builds-up")
+      now.builds_up = true;
     else if (key == "touches")
       now.needs_touches = true;
     else if (key == "instrument")
@@ -104,7 +106,8 @@ class CatalogueReader {
       take_unknown(now, rest);
     else
       fail(key,
-           "expected effect, title, short, size, formula, signature, exposed, impostors, rare, touches, "
+           "expected effect, title, short, size, formula, signature, exposed, impostors, rare, builds-up, "
+           "touches, "
            "instrument, cause, seldom, form or unknown");
   }
 

@@ -110,6 +110,8 @@ struct Effect {
   std::optional<EffectSize> size;  // no value if no single number describes the size of the effect
   std::vector<std::string> impostors;
   bool rare = false;           // true: the effect is rare and needs more evidence than its alternatives
+  bool builds_up = false;      // true: a function of the travel since a reversal, of unknown shape; other
+                               // reversal errors of the axis can be parts of it
   bool needs_touches = false;  // true: only readings along the normal of a surface can show the effect
   std::string
       of_instrument;  // sentence for the verdict if the instrument, and not the machine, causes the effect
