@@ -275,6 +275,7 @@ void Finder::simplify(double share) {
     std::optional<std::size_t> simplest;
     Selection best;
     const double apart = evaluate(without(chosen_[i])).chi_square;
+    const std::optional<std::size_t> limit = limit_of(chosen_[i]);
     for (const std::size_t other : entry_item_) {
       if (std::find(chosen_.begin(), chosen_.end(), other) != chosen_.end()) continue;
       std::vector<std::size_t> set = chosen_;
@@ -290,8 +291,7 @@ void Finder::simplify(double share) {
           pool_.same_kind(chosen_[i], other) &&
           (named || pool_.penalty(pool_[other].scored) < pool_.penalty(pool_[chosen_[i]].scored)) &&
           pool_.same_columns(chosen_[i], other);
-      const bool limit = is_limit(other, chosen_[i]);
-      if (!same_but_nearer && !limit && !pool_.contains(chosen_[i], other)) continue;
+      if (!same_but_nearer && limit != other && !pool_.contains(chosen_[i], other)) continue;
       // One of many forms that contain it fits better by chance, so it must lower the BIC by more.
       const double price = same_but_nearer ? 0 : 2 * std::log(std::max(1.0, holders_of(other)));
       if (!does_it && trial.criterion - criterion_ >= thresholds_.evidence + price) continue;
@@ -312,16 +312,17 @@ void Finder::simplify(double share) {
 double Finder::holders_of(std::size_t simple) const {
   double count = 0;
   for (const std::size_t other : entry_item_)
-    count += pool_.contains(other, simple) || is_limit(simple, other) ? 1 : 0;
+    count += pool_.contains(other, simple) || limit_of(other) == simple ? 1 : 0;
   return count;
 }
 
-bool Finder::is_limit(std::size_t simple, std::size_t general) const {
-  return depends_on(general, model::SymbolKind::kSince) && most_usual(general, true) == simple;
+std::optional<std::size_t> Finder::limit_of(std::size_t general) const {
+  if (!depends_on(general, model::SymbolKind::kSince)) return std::nullopt;
+  return most_usual(general, true);
 }
 
 double Finder::evidence_beyond_limit(std::size_t simple, std::size_t general) const {
-  if (!is_limit(simple, general)) return 0;
+  if (limit_of(general) != simple) return 0;
   return thresholds_.evidence + 2 * std::log(std::max(1.0, holders_of(simple)));
 }
 

@@ -145,9 +145,10 @@ class Finder {
   /// For rows without u, name_simplest uses the simplest form that explains nearly the whole decrease of
   /// chi^2, if this form passes the tests.
   void name_simplest();
-  /// True if `simple` is the limit of `general` for a short travel: a reversal error that builds up within a
-  /// short travel is a backlash.
-  bool is_limit(std::size_t simple, std::size_t general) const;
+  /// Returns the limit of a candidate for a short travel: a reversal error that builds up within a short
+  /// travel is a backlash. The result has no value if the candidate does not depend on the travel since a
+  /// reversal.
+  std::optional<std::size_t> limit_of(std::size_t general) const;
   /// True if the term of a candidate depends on this quantity of its axis.
   bool depends_on(std::size_t item, model::SymbolKind kind) const;
   /// Returns the number of candidates that contain the columns of the simpler form `simple` and additional

@@ -260,10 +260,10 @@ bool is_piece_of(const Evidence& evidence, const Pool& pool, std::size_t item,
   });
 }
 
-bool has_travel(const Evidence& evidence) {
-  const std::string_view since = format::entry_of(format::AxisQuantity::kSince).prefix;
-  return std::ranges::any_of(evidence.measurement().recorded,
-                             [&](const std::string& name) { return name.starts_with(since); });
+/// False if the travel of an axis since its reversals was computed from the rows.
+bool has_travel(const Evidence& evidence, std::size_t axis) {
+  return evidence.measurement().has_recorded(
+      format::axis_column(format::AxisQuantity::kSince, evidence.machine().axes[axis].name));
 }
 
 /// A backlash that changes along its axis, or a backlash beside a reversal spike, is doubtful if a reversal
@@ -284,7 +284,7 @@ std::string doubt_of_reversal(const Evidence& evidence, const Pool& pool,
     (reversal || curve ? pieces : others).push_back(one);
   }
   const bool varies = pool[item].columns.cols() > 1;
-  if (!varies && (reversals < 2 || has_travel(evidence))) return {};
+  if (!varies && (reversals < 2 || has_travel(evidence, *choice.axis))) return {};
 
   const Eigen::ArrayXd answer = evidence.response(evidence.index_of(*choice.place)).array();
   const Eigen::ArrayXd dir = evidence.at_readings(evidence.measurement().states.direction[*choice.axis]);
@@ -309,9 +309,9 @@ std::string doubt_of_reversal(const Evidence& evidence, const Pool& pool,
   return {};
 }
 
-/// Unit columns of the readings before the first recorded reversal of an axis. None if they are the half of
-/// all readings or more.
-Eigen::MatrixXd before_first_reversal(const Evidence& evidence, std::size_t axis) {
+/// 0 for each reading before the first recorded reversal of an axis, 1 for the others. All are 1 if half of
+/// the readings or more were before it.
+Eigen::VectorXd after_first_reversal(const Evidence& evidence, std::size_t axis) {
   const model::Column& direction = evidence.measurement().states.direction[axis];
   model::Column known = model::Column::Ones(direction.size());
   double first = 0;
@@ -320,11 +320,36 @@ Eigen::MatrixXd before_first_reversal(const Evidence& evidence, std::size_t axis
     known[row] = 0;
   }
   const Eigen::ArrayXd at = evidence.at_readings(known);
-  const Index count = (at == 0).count();
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(at.size(), 2 * count >= at.size() ? 0 : count);
-  for (Index reading = 0, k = 0; reading < at.size() && k < columns.cols(); ++reading)
-    if (at[reading] == 0) columns(reading, k++) = 1;
-  return columns;
+  if (2 * (at == 0).count() >= at.size()) return Eigen::VectorXd::Ones(at.size());
+  return at.matrix();
+}
+
+/// Returns the decrease of the sum of squares by `columns` beside others, if only the readings with the
+/// weight 1 are fitted.
+double explained_in(const Evidence& evidence, const Eigen::VectorXd& weight, const Eigen::MatrixXd& columns,
+                    const Eigen::MatrixXd& beside) {
+  const Eigen::MatrixXd& q = evidence.absorbed();
+  Eigen::MatrixXd all(q.rows(), q.cols() + beside.cols());
+  all << q, beside;
+  const Eigen::MatrixXd others = maths::orthonormal(weight.asDiagonal() * all, 1e-6, nullptr);
+  Eigen::MatrixXd own = weight.asDiagonal() * columns;
+  own -= others * (others.transpose() * own);
+  Eigen::VectorXd rest = weight.asDiagonal() * evidence.residual();
+  rest -= others * (others.transpose() * rest);
+  return (maths::orthonormal(own, evidence.thresholds().shape.own, nullptr).transpose() * rest).squaredNorm();
+}
+
+/// True if the readings after the first recorded reversal of an axis show next to nothing of an effect.
+bool only_before_first_reversal(const Evidence& evidence, const Pool& pool,
+                                const std::vector<std::size_t>& items, std::size_t item, std::size_t axis) {
+  const Eigen::VectorXd after = after_first_reversal(evidence, axis),
+                        ever = Eigen::VectorXd::Ones(after.size());
+  std::vector<std::size_t> others;
+  for (const std::size_t one : items)
+    if (one != item) others.push_back(one);
+  const Eigen::MatrixXd beside = pool.columns(others), &own = pool[item].columns;
+  return explained_in(evidence, after, own, beside) <
+         evidence.thresholds().shape.minor * explained_in(evidence, ever, own, beside);
 }
 
 /// Beside a reversal error that builds up, another reversal error of the same axis is a piece of it: its
@@ -339,20 +364,12 @@ std::string doubt_beside_hysteresis(const Evidence& evidence, const Pool& pool,
     if (is_piece_of(evidence, pool, item, pool.candidate(other).choice))
       return fmt::format("{} can be a part of the reversal error that builds up ({})",
                          pool.candidate(item).spoken, pool.candidate(other).spoken);
-    if (has_travel(evidence)) continue;
+    const effects::Choice& choice = pool.candidate(other).choice;
+    if (has_travel(evidence, *choice.axis)) continue;
     const auto& place = pool.candidate(item).choice.place;
-    const bool step = !pool.candidate(item).choice.runs.empty() &&
-                      (!place || moves_alike(evidence, *place, *pool.candidate(other).choice.place));
-    std::vector<std::size_t> others;
-    for (const std::size_t one : items)
-      if (one != item) others.push_back(one);
-    const Eigen::MatrixXd beside = pool.columns(others),
-                          begin = before_first_reversal(evidence, *pool.candidate(other).choice.axis);
-    Eigen::MatrixXd all(beside.rows(), beside.cols() + begin.cols());
-    all << beside, begin;
-    const double later = own_part(evidence, pool[item].columns, all).explained(),
-                 ever = own_part(evidence, pool[item].columns, beside).explained();
-    if (step || later < evidence.thresholds().shape.minor * ever)
+    const bool step =
+        !pool.candidate(item).choice.runs.empty() && (!place || moves_alike(evidence, *place, *choice.place));
+    if (step || only_before_first_reversal(evidence, pool, items, item, *choice.axis))
       return fmt::format(
           "{} can be the reversal error ({}) at the begin of a run: the way of the axis before its first row "
           "is not recorded",

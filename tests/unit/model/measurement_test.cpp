@@ -147,12 +147,13 @@ TEST(MeasurementFile, CountsTheTravelSinceAReversalFromSuccessiveRows) {
   EXPECT_FALSE(m.has_recorded("sinceX"));
 }
 
-/// The axis went beyond a position and came back: no row shows the reversal.
 TEST(MeasurementFile, ARunThatBeginsAgainstTheWayToItsFirstRowBeganWithATurn) {
   const Measurement m = read("X[mm],B[deg],dirX,x[mm],run\n0,0,1,0,a\n40,0,1,0,a\n10,0,1,0,b\n40,0,1,0,b\n");
   const double expected[] = {0, 40, 0, 30};
   for (Eigen::Index row = 0; row < 4; ++row) EXPECT_NEAR(m.states.since[0][row], expected[row], 1e-6) << row;
 }
+
+/// The axis went beyond a position and came back: no row shows the reversal.
 TEST(MeasurementFile, TheTravelSinceAReversalIsNotKnownIfAStepDisagreesWithItsDirection) {
   const auto last = [](const std::string& rows) {
     return read("X[mm],B[deg],dirX,x[mm]\n0,0,1,0\n40,0,1,0\n10,0,-1,0\n" + rows).states.since[0].tail(1)[0];

@@ -23,6 +23,10 @@ const WordSet kInvalidWords = {"ungültig",    "ungueltig", "ungültige",   "ung
                                "invalid",     "verworfen", "discarded",   "void",       "rejected",
                                "fehlmessung", "discard",   "unbrauchbar", "unusable",   "reject"};
 
+std::vector<std::string> words_of(const std::string& text) {
+  return text::words_in(text::in_small_letters(text), " \t_-./:;,()[]!=");
+}
+
 /// True for a remark that says that its row is no valid reading. A negation ("nicht ungültig") and a question
 /// ("ungültig?") are no such remark.
 bool says_invalid(const std::string& cell) {
@@ -33,16 +37,12 @@ bool says_invalid(const std::string& cell) {
   if (cell.find('?') != std::string::npos) return false;
   if (kWhole.contains(text::in_small_letters(cell))) return true;
   bool invalid = false, valid = false, negated = false;
-  for (const std::string& word : text::words_in(text::in_small_letters(cell), " \t_-./:;,()[]!=")) {
+  for (const std::string& word : words_of(cell)) {
     invalid |= kInvalidWords.contains(word);
     valid |= kValid.contains(word);
     negated |= kNot.contains(word);
   }
   return negated ? valid && !invalid : invalid;
-}
-
-std::vector<std::string> words_of(const std::string& text) {
-  return text::words_in(text::in_small_letters(text), " \t_-./:;,()[]!=");
 }
 
 /// True for a remark about another reading than that of its row: "Wiederholung, da erste ungültig war", but
