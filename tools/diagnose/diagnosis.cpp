@@ -24,6 +24,7 @@
 #include "tools/fit/noise/noise.h"
 #include "tools/format/readings.h"
 #include "tools/maths/factors.h"
+#include "tools/maths/threads.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/model/rebind.h"
@@ -335,7 +336,9 @@ class Diagnoser {
       if (std::find(accepted_.begin(), accepted_.end(), i) != accepted_.end()) continue;
       rest.emplace_back(finder_.score_alone(i), i);
     }
-    std::sort(rest.begin(), rest.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::stable_sort(rest.begin(), rest.end(), [](const auto& a, const auto& b) {
+      return std::round(a.first / kSameCriterion) > std::round(b.first / kSameCriterion);
+    });
     // The cause, those that cannot be distinguished from it, then the other accepted steps.
     std::vector<std::size_t> items;
     std::set<std::string> seen;
@@ -356,12 +359,19 @@ class Diagnoser {
   void fit_candidates() {
     const std::vector<std::size_t> items = items_to_list();
     const effects::AxisPlaces axes(machine_);
+    std::vector<effects::FittedEffects> fits(items.size());
+    maths::in_threads([&](std::size_t thread, std::size_t threads) {
+      for (std::size_t i = thread; i < items.size(); i += threads) {
+        if (thread == 0)
+          options_.progress(0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(items.size()),
+                            "fitting the candidates");
+        fits[i] = fit_with({items[i]});
+      }
+    });
     for (std::size_t i = 0; i < items.size(); ++i) {
-      options_.progress(0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(items.size()),
-                        "fitting the candidates");
       const std::size_t item = items[i];
       CandidateFinding finding;
-      const effects::FittedEffects fitted = fit_with({item});
+      const effects::FittedEffects& fitted = fits[i];
       // What stands beside an accepted effect in the model changes the values of that effect.
       const auto accepted = std::find(accepted_.begin(), accepted_.end(), item);
       finding.accepted = accepted != accepted_.end();

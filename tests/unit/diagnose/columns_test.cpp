@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "tests/unit/effects/candidates.h"
+#include "tools/diagnose/propose/by_rows.h"
 #include "tools/diagnose/propose/evidence.h"
+#include "tools/diagnose/propose/families.h"
+#include "tools/diagnose/propose/projected.h"
 #include "tools/effects/add.h"
 #include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
@@ -93,6 +97,58 @@ TEST_P(Columns, AreTheDerivativesOfThePrediction) {
   }
   // Most places move the tool point: the comparison is not of zeros.
   EXPECT_GT(seen_ * 10, all_ * 6);
+}
+
+TEST_P(Columns, HaveTheSameScalarProductsByRows) {
+  constexpr std::size_t kMostPlaces = 2, kRows = 60;
+  const Evidence evidence(machine_, diagnose_test::random_rows(machine_, kRows, random_));
+  ASSERT_TRUE(evidence.observations_are_independent());
+  std::vector<ScannedCandidate> list;
+  for (const Choice& choice : diagnose_test::all_choices(machine_, kMostPlaces)) {
+    ScannedCandidate item;
+    item.candidate = make_candidate(evidence.machine(), choice);
+    for (const CandidateUnknown& unknown : scanned_unknowns(item.candidate))
+      item.grid.push_back({unknown.start, 1.3 * unknown.start});
+    list.push_back(std::move(item));
+  }
+  Families families(evidence, list);
+  families.extend();
+  EXPECT_LT(families.size(), list.size());
+  // Directions beside the free parameters of the model, as those of a search are.
+  Eigen::MatrixXd known = Eigen::MatrixXd::Random(evidence.residual().size(), 3);
+  known -= evidence.absorbed() * (evidence.absorbed().transpose() * known);
+  std::vector<std::size_t> places(evidence.places().size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  ByRows by_rows(evidence);
+  by_rows.prepare(places, known, list.size());
+  ColumnMaker maker(evidence);
+  std::size_t compared = 0;
+  for (std::size_t family = 0; family < families.size(); ++family)
+    for (const std::size_t candidate : families.members(family)) {
+      SCOPED_TRACE(list[candidate].candidate.label + ", form " +
+                   list[candidate].candidate.choice.form->label);
+      EXPECT_FALSE(by_rows.is_complete(candidate));
+      by_rows.complete(candidate, list[candidate].candidate, *families.functions(family, maker));
+      EXPECT_TRUE(by_rows.is_complete(candidate));
+      const ProjectedBatch& batch = by_rows.batch(candidate);
+      const Eigen::MatrixXd products = by_rows.products(candidate);
+      ASSERT_EQ(batch.points.size(), grid_points(list[candidate].grid).size());
+      for (std::size_t i = 0; i < batch.points.size(); ++i) {
+        const GridPoint& point = batch.points[i];
+        const Eigen::MatrixXd columns = evidence.columns(list[candidate].candidate, point.scanned);
+        ASSERT_EQ(columns.cols(), point.count);
+        const ProjectedBatch expected =
+            project(evidence, {{candidate, point.scanned, 0, point.count}}, columns);
+        const double longest = expected.norms.maxCoeff();
+        EXPECT_LE((batch.norms.segment(point.first, point.count) - expected.norms).norm(), 1e-9 * longest);
+        EXPECT_LE((batch.grams[i] - expected.grams[0]).norm(), 1e-9 * longest * longest);
+        EXPECT_LE((products.middleCols(point.first, point.count) - known.transpose() * columns).norm(),
+                  1e-9 * longest * known.norm());
+        compared += longest > 0 && expected.grams[0].trace() > 1e-6 * longest * longest ? 1 : 0;
+      }
+      if (HasFailure()) return;
+    }
+  EXPECT_GT(compared, list.size() / 4);
 }
 
 INSTANTIATE_TEST_SUITE_P(Machines, Columns,

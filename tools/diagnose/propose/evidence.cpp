@@ -62,6 +62,11 @@ Evidence::Evidence(const model::Machine& fitted, const model::Measurement& measu
       observation_.push_back(i);
       rows_.push_back(measurement_.observations[i].row);
     }
+  fit_rows_ = rows_;
+  std::sort(fit_rows_.begin(), fit_rows_.end());
+  fit_rows_.erase(std::unique(fit_rows_.begin(), fit_rows_.end()), fit_rows_.end());
+  for (const std::size_t row : rows_)
+    at_fit_row_.push_back(std::lower_bound(fit_rows_.begin(), fit_rows_.end(), row) - fit_rows_.begin());
   weight_ = weights(observation_);
   layout_ = fit::noise_layout(measurement_, observation_, thresholds_.layout);
   place_ = fit::places_of_rows(measurement_, thresholds_.layout);
@@ -419,6 +424,28 @@ std::size_t Evidence::index_of(const effects::DofPlace& place) const {
   return static_cast<std::size_t>(std::find(places_.begin(), places_.end(), place) - places_.begin());
 }
 
+Eigen::MatrixXd Evidence::sums_by_row(std::size_t place, const Eigen::MatrixXd& columns) const {
+  const auto answer = response(place);
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(fit_rows_.size()), columns.cols());
+  for (Eigen::Index j = 0; j < columns.cols(); ++j)
+    for (Eigen::Index i = 0; i < columns.rows(); ++i)
+      sums(at_fit_row_[static_cast<std::size_t>(i)], j) += answer[i] * columns(i, j);
+  return sums;
+}
+
+Eigen::MatrixXd Evidence::at_observations(const effects::Candidate& candidate,
+                                          const std::vector<Eigen::MatrixXd>& of_term) const {
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows_.size()), of_term.at(0).cols());
+  for (std::size_t t = 0; t < of_term.size(); ++t) {
+    const auto answer = response(index_of(candidate.terms[t].place));
+    for (Eigen::Index j = 0; j < columns.cols(); ++j)
+      for (Eigen::Index i = 0; i < columns.rows(); ++i)
+        columns(i, j) += answer[i] * of_term[t](at_fit_row_[static_cast<std::size_t>(i)], j);
+  }
+  return columns;
+}
+
 ColumnMaker::ColumnMaker(const Evidence& evidence)
     : evidence_(evidence), scratch_(evidence.machine()), own_statics_(scratch_.statics.size()) {}
 
@@ -426,31 +453,39 @@ Eigen::MatrixXd ColumnMaker::raw(const effects::Candidate& candidate, const std:
   return raw_at(candidate, scanned, evidence_.measurement().states);
 }
 
-Eigen::MatrixXd ColumnMaker::raw_at(const effects::Candidate& candidate, const std::vector<double>& scanned,
-                                    const model::States& states) {
+std::vector<Eigen::MatrixXd> ColumnMaker::functions(const effects::Candidate& candidate,
+                                                    const std::vector<double>& scanned) {
+  return functions_at(candidate, scanned, evidence_.measurement().states);
+}
+
+std::vector<Eigen::MatrixXd> ColumnMaker::functions_at(const effects::Candidate& candidate,
+                                                       const std::vector<double>& scanned,
+                                                       const model::States& states) {
   scratch_.statics.resize(own_statics_);
   const std::vector<std::size_t> linear = effects::add_unknowns(scratch_, candidate, scanned);
   std::vector<char> active(scratch_.statics.size(), 0);
   for (const std::size_t unknown : linear) active[unknown] = 1;
   active.resize(scratch_.statics.size() + 6 * scratch_.axes.size(), 0);
-  const std::vector<std::size_t>& rows = evidence_.rows();
-  Eigen::MatrixXd result =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(linear.size()));
+  const std::vector<std::size_t>& rows = evidence_.fit_rows();
+  std::vector<Eigen::MatrixXd> of_term;
   model::Evaluator evaluate(scratch_, states, active);
   for (const effects::CandidateTerm& term : candidate.terms) {
+    of_term.emplace_back(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()),
+                                               static_cast<Eigen::Index>(linear.size())));
     const model::ValueAndSlopes dual = evaluate(*model::parse_expression_for(scratch_, term.text));
-    const auto answer = evidence_.response(evidence_.index_of(term.place));
     for (const auto& [key, value] : dual.by) {
       const auto found = std::find(linear.begin(), linear.end(), key);
       if (found == linear.end()) continue;
-      auto column = result.col(found - linear.begin());
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        const auto at = static_cast<Eigen::Index>(i);
-        column[at] += answer[at] * value[rows[i]];
-      }
+      auto column = of_term.back().col(found - linear.begin());
+      for (std::size_t i = 0; i < rows.size(); ++i) column[static_cast<Eigen::Index>(i)] = value[rows[i]];
     }
   }
-  return result;
+  return of_term;
+}
+
+Eigen::MatrixXd ColumnMaker::raw_at(const effects::Candidate& candidate, const std::vector<double>& scanned,
+                                    const model::States& states) {
+  return evidence_.at_observations(candidate, functions_at(candidate, scanned, states));
 }
 
 Eigen::MatrixXd ColumnMaker::columns(const effects::Candidate& candidate,

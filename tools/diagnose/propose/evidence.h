@@ -43,6 +43,15 @@ class Evidence {
   auto response(std::size_t place) const { return response_.col(static_cast<Eigen::Index>(place)); }
   /// Returns the row of each fit observation.
   const std::vector<std::size_t>& rows() const { return rows_; }
+  /// Returns the rows that have a fit observation, in increasing order.
+  const std::vector<std::size_t>& fit_rows() const { return fit_rows_; }
+  /// Returns, for each row of fit_rows(), the sum over its fit observations of the response to a motion at a
+  /// location, times the entries of `columns` (one row for each fit observation).
+  Eigen::MatrixXd sums_by_row(std::size_t place, const Eigen::MatrixXd& columns) const;
+  /// Returns columns before whitening from the terms of a candidate, given as functions of the fit rows: for
+  /// each term a matrix with one row for each row of fit_rows().
+  Eigen::MatrixXd at_observations(const effects::Candidate& candidate,
+                                  const std::vector<Eigen::MatrixXd>& of_term) const;
   /// Returns the values of a column of the measurement in the row of each fit observation.
   Eigen::ArrayXd at_readings(const model::Column& column) const;
   /// Returns the commanded position of an axis in each row of the measurement. A commanded position excludes
@@ -86,6 +95,8 @@ class Evidence {
   /// free parameters.
   void assume(const fit::NoiseModel& noise);
   const fit::NoiseModel& noise() const { return noise_; }
+  /// True if whitening divides every observation by noise().own, and does nothing else.
+  bool observations_are_independent() const { return noise_.independent() && pose_share_ == 0; }
   /// Returns a counter that increases each time the whitening changes.
   std::size_t revision() const { return revision_; }
   /// Returns the logarithm of the determinant of the covariance of the readings under the noise model
@@ -168,6 +179,8 @@ class Evidence {
                               // inputs
   std::vector<effects::DofPlace> places_;
   std::vector<std::size_t> observation_, rows_;  // observation and row of each fit observation
+  std::vector<std::size_t> fit_rows_;            // the rows of rows_, each once, in increasing order
+  std::vector<Eigen::Index> at_fit_row_;         // index in fit_rows_ of each fit observation
   Eigen::MatrixXd response_, absorbed_;
   Eigen::VectorXd weight_, residual_;
   Eigen::MatrixXd things_;  // weighted readings per unit of each unknown value of a touched object
@@ -193,6 +206,10 @@ class Evidence {
 class ColumnMaker {
  public:
   explicit ColumnMaker(const Evidence& evidence);
+  /// Returns the terms of a candidate in the fit rows (Evidence::fit_rows), one matrix for each term: the
+  /// values per unit of each linear unknown, one column for each.
+  std::vector<Eigen::MatrixXd> functions(const effects::Candidate& candidate,
+                                         const std::vector<double>& scanned);
   Eigen::MatrixXd raw(const effects::Candidate& candidate, const std::vector<double>& scanned);
   /// Returns the columns of a candidate for other states of the rows.
   Eigen::MatrixXd raw_at(const effects::Candidate& candidate, const std::vector<double>& scanned,
@@ -201,6 +218,9 @@ class ColumnMaker {
   Eigen::MatrixXd columns(const effects::Candidate& candidate, const std::vector<double>& scanned);
 
  private:
+  std::vector<Eigen::MatrixXd> functions_at(const effects::Candidate& candidate,
+                                            const std::vector<double>& scanned, const model::States& states);
+
   const Evidence& evidence_;
   model::Machine scratch_;
   std::size_t own_statics_;

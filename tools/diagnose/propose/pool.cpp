@@ -157,7 +157,9 @@ void Pool::add(const std::vector<Scored>& scored, const Eigen::MatrixXd& beside)
         static_cast<double>(scored[i].unknowns) * std::log(static_cast<double>(evidence_.rows().size())) -
         penalty(scored[i]);
   }
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::round(value[a] / kSameCriterion) > std::round(value[b] / kSameCriterion);
+  });
   std::map<std::string, std::size_t> of_effect;
   std::size_t taken = 0;
   for (const std::size_t i : order) {

@@ -34,18 +34,24 @@ std::vector<std::size_t> KnownProducts::prepare(const Eigen::MatrixXd& columns, 
   return prepared;
 }
 
-Eigen::MatrixXd KnownProducts::products(const std::vector<std::size_t>& prepared, const ProjectedBatch& batch,
-                                        std::size_t at) {
-  std::vector<std::size_t> missing;
-  for (const std::size_t k : prepared)
-    if (known_[k].of_batch[at].size() == 0) missing.push_back(k);
-  Eigen::MatrixXd columns(batch.columns.rows(), static_cast<Eigen::Index>(missing.size()));
-  for (std::size_t i = 0; i < missing.size(); ++i)
-    columns.col(static_cast<Eigen::Index>(i)) = known_[missing[i]].column;
-  const Eigen::MatrixXd made = columns.transpose() * batch.columns;
-  for (std::size_t i = 0; i < missing.size(); ++i)
-    known_[missing[i]].of_batch[at] = made.row(static_cast<Eigen::Index>(i));
-  Eigen::MatrixXd all(static_cast<Eigen::Index>(prepared.size()), batch.columns.cols());
+std::vector<Eigen::Index> KnownProducts::missing(const std::vector<std::size_t>& prepared,
+                                                 std::size_t at) const {
+  std::vector<Eigen::Index> positions;
+  for (std::size_t i = 0; i < prepared.size(); ++i)
+    if (known_[prepared[i]].of_batch[at].size() == 0) positions.push_back(static_cast<Eigen::Index>(i));
+  return positions;
+}
+
+void KnownProducts::store(const std::vector<std::size_t>& prepared,
+                          const std::vector<Eigen::Index>& positions, std::size_t at,
+                          const Eigen::MatrixXd& products) {
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    known_[prepared[static_cast<std::size_t>(positions[i])]].of_batch[at] =
+        products.row(static_cast<Eigen::Index>(i));
+}
+
+Eigen::MatrixXd KnownProducts::products(const std::vector<std::size_t>& prepared, std::size_t at) const {
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(prepared.size()), known_[prepared.at(0)].of_batch[at].size());
   for (std::size_t i = 0; i < prepared.size(); ++i)
     all.row(static_cast<Eigen::Index>(i)) = known_[prepared[i]].of_batch[at];
   return all;
@@ -63,6 +69,19 @@ void ProjectedColumns::renew(const Evidence& evidence, std::size_t candidates) {
   }
   held_.resize(candidates);
   waves_.resize(candidates);
+}
+
+Eigen::MatrixXd ProjectedColumns::products_of(const std::vector<std::size_t>& prepared, std::size_t at) {
+  const std::vector<Eigen::Index> missing = products_.missing(prepared, at);
+  if (!missing.empty()) {
+    const Eigen::MatrixXd& columns = batches_[at].columns;
+    Eigen::MatrixXd directions(columns.rows(), static_cast<Eigen::Index>(missing.size()));
+    for (std::size_t i = 0; i < missing.size(); ++i)
+      directions.col(static_cast<Eigen::Index>(i)) =
+          products_.column(prepared[static_cast<std::size_t>(missing[i])]);
+    products_.store(prepared, missing, at, directions.transpose() * columns);
+  }
+  return products_.products(prepared, at);
 }
 
 const ProjectedWaves* ProjectedColumns::waves(std::size_t candidate) const {

@@ -40,13 +40,18 @@ class KnownProducts {
  public:
   /// Deletes all products.
   void clear() { known_.clear(); }
-  /// Prepares the products of `columns` with `batches` batches. Returns the numbers with which products()
-  /// finds them.
+  /// Prepares the products of `columns` with `batches` batches. Returns the numbers of the columns.
   std::vector<std::size_t> prepare(const Eigen::MatrixXd& columns, std::size_t batches);
-  /// Returns the scalar products of the prepared columns (rows) with the columns of the batch `at`. Different
-  /// threads may call products() at the same time for different batches.
-  Eigen::MatrixXd products(const std::vector<std::size_t>& prepared, const ProjectedBatch& batch,
-                           std::size_t at);
+  /// Returns the column with a number that prepare() returned.
+  const Eigen::VectorXd& column(std::size_t number) const { return known_[number].column; }
+  /// Returns the positions in `prepared` of the columns that have no products with the batch `at` yet.
+  std::vector<Eigen::Index> missing(const std::vector<std::size_t>& prepared, std::size_t at) const;
+  /// Stores the products (rows) of the columns at these positions. Different threads may call store() at the
+  /// same time for different batches.
+  void store(const std::vector<std::size_t>& prepared, const std::vector<Eigen::Index>& positions,
+             std::size_t at, const Eigen::MatrixXd& products);
+  /// Returns the scalar products of the prepared columns (rows) with the columns of the batch `at`.
+  Eigen::MatrixXd products(const std::vector<std::size_t>& prepared, std::size_t at) const;
 
  private:
   struct Known {
@@ -70,6 +75,9 @@ class ProjectedColumns {
   const std::vector<ProjectedBatch>& batches() const { return batches_; }
   /// Returns the scalar products of accepted columns with the stored batches.
   KnownProducts& products() { return products_; }
+  /// Returns the scalar products of prepared columns (rows) with the columns of the batch `at`. Computes and
+  /// stores what is missing. Different threads may call products_of() at the same time for different batches.
+  Eigen::MatrixXd products_of(const std::vector<std::size_t>& prepared, std::size_t at);
   /// Returns the stored sines and cosines of a candidate, or null if they are not stored.
   const ProjectedWaves* waves(std::size_t candidate) const;
   /// Returns the number of values for which the store has room.

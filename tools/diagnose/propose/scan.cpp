@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <map>
-#include <thread>
+#include <memory>
+#include <mutex>
+#include <set>
 #include <utility>
 
 #include "tools/maths/golden.h"
+#include "tools/maths/threads.h"
 
 namespace vernier::diagnose {
 namespace {
@@ -28,22 +30,12 @@ std::pair<double, double> neighbours(const ScannedCandidate& item, std::size_t u
 
 }  // namespace
 
-std::vector<std::vector<double>> grid_points(const std::vector<std::vector<double>>& lists) {
-  std::vector<std::vector<double>> points(1);
-  for (const std::vector<double>& list : lists) {
-    std::vector<std::vector<double>> next;
-    for (const auto& point : points)
-      for (const double value : list) {
-        next.push_back(point);
-        next.back().push_back(value);
-      }
-    points = std::move(next);
-  }
-  return points;
-}
-
 Scanner::Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates)
-    : evidence_(evidence), thresholds_(evidence.thresholds().pool), candidates_(candidates) {}
+    : evidence_(evidence),
+      thresholds_(evidence.thresholds().pool),
+      candidates_(candidates),
+      families_(evidence, candidates),
+      by_rows_(evidence) {}
 
 namespace {
 
@@ -146,7 +138,7 @@ Scored Scanner::score_at(ColumnMaker& maker, std::size_t candidate, const std::v
 class Scanner::Part {
  public:
   /// `room`: numbers that the thread may keep.
-  Part(const Scanner& scanner, Eigen::Index room, const ScanTarget& target, std::vector<Scored>& best)
+  Part(Scanner& scanner, Eigen::Index room, const ScanTarget& target, std::vector<Scored>& best)
       : scanner_(scanner), room_(room), target_(target), best_(best), maker_(scanner.evidence_) {}
 
   /// Scans a batch. `products`: scalar products of the target's directions with the columns of the batch.
@@ -159,14 +151,24 @@ class Scanner::Part {
       if (so_far.unknowns == 0 || scored.gain > so_far.gain) so_far = std::move(scored);
     }
   }
-  /// Computes the columns of a candidate. The candidate is scanned with the next ones, in one batch.
-  void scan(std::size_t candidate) {
-    for (std::vector<double>& scanned : grid_points(scanner_.candidates_[candidate].grid)) {
-      raw_.push_back(maker_.columns(scanner_.candidates_[candidate].candidate, scanned));
-      points_.push_back({candidate, std::move(scanned), width_, raw_.back().cols()});
-      width_ += raw_.back().cols();
+  /// Computes the columns of candidates of one family. They are scanned with the next ones, in one batch.
+  void scan(std::size_t family, const std::vector<std::size_t>& candidates) {
+    if (candidates.empty()) return;
+    const std::shared_ptr<const RowFunctions> functions = scanner_.families_.functions(family, maker_);
+    for (const std::size_t candidate : candidates) add(candidate, *functions);
+  }
+  /// Scans candidates of one family by the rows. `combine`: as of Sources.
+  void scan_by_rows(std::size_t family, const std::vector<std::size_t>& candidates,
+                    const Eigen::MatrixXd& combine) {
+    ByRows& by_rows = scanner_.by_rows_;
+    const auto is_complete = [&](std::size_t candidate) { return by_rows.is_complete(candidate); };
+    if (!std::all_of(candidates.begin(), candidates.end(), is_complete)) {
+      const std::shared_ptr<const RowFunctions> functions = scanner_.families_.functions(family, maker_);
+      for (const std::size_t candidate : candidates)
+        by_rows.complete(candidate, scanner_.candidates_[candidate].candidate, *functions);
     }
-    if (width_ >= kBatch) end_batch();
+    for (const std::size_t candidate : candidates)
+      scan(by_rows.batch(candidate), combine * by_rows.products(candidate));
   }
   /// Scans what is left, and returns the batches for the next scans.
   std::vector<ProjectedBatch> end() {
@@ -175,11 +177,25 @@ class Scanner::Part {
   }
 
  private:
+  void add(std::size_t candidate, const RowFunctions& functions) {
+    Eigen::MatrixXd raw =
+        scanner_.evidence_.at_observations(scanner_.candidates_[candidate].candidate, functions.of_term);
+    scanner_.evidence_.whiten(raw);
+    for (std::size_t i = 0; i < functions.points.size(); ++i) {
+      points_.push_back({candidate, functions.points[i], width_, functions.unknowns});
+      width_ += functions.unknowns;
+    }
+    raw_.push_back(std::move(raw));
+    if (width_ >= kBatch) end_batch();
+  }
   void end_batch() {
     if (points_.empty()) return;
     Eigen::MatrixXd columns(target_.residual.size(), width_);
-    for (std::size_t i = 0; i < raw_.size(); ++i)
-      columns.middleCols(points_[i].first, points_[i].count) = raw_[i];
+    Eigen::Index at = 0;
+    for (const Eigen::MatrixXd& raw : raw_) {
+      columns.middleCols(at, raw.cols()) = raw;
+      at += raw.cols();
+    }
     ProjectedBatch batch = project(scanner_.evidence_, std::move(points_), std::move(columns));
     scan(batch, target_.directions.transpose() * batch.columns);
     if (batch.columns.size() <= room_) {
@@ -191,7 +207,7 @@ class Scanner::Part {
     width_ = 0;
   }
 
-  const Scanner& scanner_;
+  Scanner& scanner_;
   Eigen::Index room_;
   const ScanTarget& target_;
   std::vector<Scored>& best_;
@@ -228,39 +244,54 @@ Scanner::Sources Scanner::sources(const AcceptedColumns& accepted) const {
   return sources;
 }
 
+std::vector<std::size_t> Scanner::prepare(const Sources& sources, std::size_t first_candidate) {
+  families_.extend();
+  if (!evidence_.observations_are_independent()) {
+    kept_.renew(evidence_, candidates_.size());
+    return kept_.products().prepare(sources.columns, kept_.batches().size());
+  }
+  std::set<std::size_t> places;
+  for (std::size_t c = first_candidate; c < candidates_.size(); ++c)
+    for (const effects::CandidateTerm& term : candidates_[c].candidate.terms)
+      places.insert(evidence_.index_of(term.place));
+  by_rows_.prepare({places.begin(), places.end()}, sources.columns, candidates_.size());
+  return {};
+}
+
 std::vector<Scored> Scanner::scan(const AcceptedColumns& accepted,
                                   const std::function<void(double)>& progress, std::size_t first_candidate) {
   const ScanTarget target = this->target(accepted.basis);
   const Sources sources = this->sources(accepted);
-  kept_.renew(evidence_, candidates_.size());
-  const std::vector<std::size_t> prepared = kept_.products().prepare(sources.columns, kept_.batches().size());
+  const std::vector<std::size_t> prepared = prepare(sources, first_candidate);
+  const bool by_rows = evidence_.observations_are_independent();
   std::vector<Scored> best(candidates_.size());
   // Each thread writes the entries of its own candidates only.
-  const std::size_t threads = std::max(1U, std::min(4U, std::thread::hardware_concurrency()));
-  std::vector<std::size_t> others;
-  for (std::size_t c = first_candidate; c < candidates_.size(); ++c)
-    if (!kept_.holds(c)) others.push_back(c);
-  const Eigen::Index room = kept_.room() / static_cast<Eigen::Index>(threads);
-  const auto scan_every = [&](std::size_t first, const std::function<void(double)>& tell) {
-    Part part(*this, room, target, best);
-    for (std::size_t i = first; i < kept_.batches().size(); i += threads) {
+  std::mutex mutex;
+  std::map<std::size_t, std::vector<ProjectedBatch>> made;  // by thread
+  maths::in_threads([&](std::size_t thread, std::size_t threads) {
+    Part part(*this, kept_.room() / static_cast<Eigen::Index>(threads), target, best);
+    for (std::size_t i = thread; !by_rows && i < kept_.batches().size(); i += threads) {
       const ProjectedBatch& batch = kept_.batches()[i];
       if (batch.points.back().candidate < first_candidate) continue;
-      part.scan(batch, sources.combine * kept_.products().products(prepared, batch, i));
+      part.scan(batch, sources.combine * kept_.products_of(prepared, i));
     }
-    for (std::size_t i = first; i < others.size(); i += threads) {
-      part.scan(others[i]);
-      if (tell) tell(static_cast<double>(i) / static_cast<double>(others.size()));
+    for (std::size_t family = thread; family < families_.size(); family += threads) {
+      std::vector<std::size_t> members;
+      for (const std::size_t c : families_.members(family))
+        if (c >= first_candidate && (by_rows || !kept_.holds(c))) members.push_back(c);
+      if (by_rows)
+        part.scan_by_rows(family, members, sources.combine);
+      else
+        part.scan(family, members);
+      if (thread == 0 && progress)
+        progress(static_cast<double>(family) / static_cast<double>(families_.size()));
     }
-    return part.end();
-  };
-  std::vector<std::future<std::vector<ProjectedBatch>>> parts;  // each passes on the exception of its part
-  for (std::size_t k = 1; k < threads; ++k)
-    parts.push_back(std::async(std::launch::async, [&, k] { return scan_every(k, {}); }));
-  std::vector<ProjectedBatch> made = scan_every(0, progress);
-  for (auto& part : parts)
-    for (ProjectedBatch& batch : part.get()) made.push_back(std::move(batch));
-  for (ProjectedBatch& batch : made) kept_.keep(std::move(batch));
+    std::vector<ProjectedBatch> batches = part.end();
+    const std::lock_guard<std::mutex> lock(mutex);
+    made[thread] = std::move(batches);
+  });
+  for (auto& [thread, batches] : made)
+    for (ProjectedBatch& batch : batches) kept_.keep(std::move(batch));
   std::vector<Scored> seen;
   for (std::size_t c = first_candidate; c < best.size(); ++c)
     if (best[c].unknowns > 0) seen.push_back(std::move(best[c]));

@@ -4,8 +4,10 @@
 #include <functional>
 #include <vector>
 
+#include "tools/diagnose/propose/by_rows.h"
 #include "tools/diagnose/propose/enumerate.h"
 #include "tools/diagnose/propose/evidence.h"
+#include "tools/diagnose/propose/families.h"
 #include "tools/diagnose/propose/projected.h"
 #include "tools/maths/orthonormal.h"
 
@@ -73,6 +75,9 @@ class Scanner {
   struct Sources;
   /// Returns the sources of the directions of target(accepted.basis).
   Sources sources(const AcceptedColumns& accepted) const;
+  /// Prepares a scan of the candidates from `first_candidate` on beside the columns of `sources`. Returns the
+  /// numbers of the stored products of these columns; empty if the scan is by rows.
+  std::vector<std::size_t> prepare(const Sources& sources, std::size_t first_candidate);
   /// Returns the difference of chi^2 below which two periods fit equally well. `left`: chi^2 that remains
   /// with the cyclic error in the model. If `left` exceeds the noise, the difference is scaled by `left`.
   double alike_within(double left) const;
@@ -104,9 +109,8 @@ class Scanner {
   const PoolThresholds& thresholds_;
   const std::vector<ScannedCandidate>& candidates_;
   ProjectedColumns kept_;
+  Families families_;
+  ByRows by_rows_;
 };
-
-/// Returns every combination of the values of several lists.
-std::vector<std::vector<double>> grid_points(const std::vector<std::vector<double>>& lists);
 
 }  // namespace vernier::diagnose

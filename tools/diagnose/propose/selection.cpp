@@ -80,7 +80,7 @@ Selection best_addition(const SelectionProblem& p, const std::vector<std::size_t
     if (clashes(p, kept, entry)) continue;
     set.back() = entry;
     Selection next = evaluate_selection(p, set);
-    if (next.criterion < now.criterion - 1e-9) now = std::move(next);
+    if (next.criterion < now.criterion - kSameCriterion) now = std::move(next);
   }
   return now;
 }
@@ -100,12 +100,12 @@ Selection improve(const SelectionProblem& p, Selection now, std::size_t most) {
         break;
       }
       const Selection exchanged = best_addition(p, others, now);
-      if (exchanged.criterion < now.criterion - 1e-9) {
+      if (exchanged.criterion < now.criterion - kSameCriterion) {
         now = exchanged;
         break;
       }
     }
-    if (now.criterion >= before - 1e-9) break;
+    if (now.criterion >= before - kSameCriterion) break;
   }
   return now;
 }
@@ -117,7 +117,7 @@ Selection best_pair(const SelectionProblem& p) {
     for (std::size_t b = 0; b < a; ++b) {
       if (p.entries[a].cause == p.entries[b].cause) continue;
       Selection next = evaluate_selection(p, {a, b});
-      if (next.criterion < best.criterion) best = std::move(next);
+      if (next.criterion < best.criterion - kSameCriterion) best = std::move(next);
     }
   return best;
 }
@@ -132,7 +132,7 @@ void order(const SelectionProblem& p, Selection& selection) {
       std::vector<std::size_t> set = ordered;
       set.push_back(rest[i]);
       const double value = evaluate_selection(p, set).criterion;
-      if (value < least) {
+      if (value < least - kSameCriterion) {
         least = value;
         best = i;
       }
@@ -183,7 +183,7 @@ Selection select(const SelectionProblem& p, std::size_t most,
   Selection best = improve(p, evaluate_selection(p, {}), most);
   const auto try_from = [&](const Selection& start) {
     Selection other = improve(p, start, most);
-    if (other.criterion < best.criterion - 1e-9) best = std::move(other);
+    if (other.criterion < best.criterion - kSameCriterion) best = std::move(other);
   };
   if (most >= 2) try_from(best_pair(p));
   for (const std::vector<std::size_t>& start : starts)

@@ -8,6 +8,10 @@
 
 namespace vernier::diagnose {
 
+/// Difference of two criteria (units of chi^2) that is rounding and no evidence. Of two descriptions of one
+/// effect, the one that comes first in the list stays.
+inline constexpr double kSameCriterion = 1e-3;
+
 /// A group of columns (the terms of one candidate) that enter a model together.
 struct SelectionEntry {
   Eigen::Index first = 0, count = 1;
