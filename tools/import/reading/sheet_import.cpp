@@ -14,6 +14,7 @@
 #include "tools/import/reading/rows_below.h"
 #include "tools/import/reading/side_runs.h"
 #include "tools/import/reading/title_lines.h"
+#include "tools/import/reading/title_positions.h"
 #include "tools/import/sizes/deviation_sizes.h"
 #include "tools/import/sizes/outlying_cells.h"
 #include "tools/import/sizes/position_sizes.h"
@@ -319,6 +320,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
     column.use = SheetColumn::Use::kLeft;
     result.wishes.assignments.push_back({heading, column, {}});
   }
+  add_positions_of_titles(result.sheet, result.table, result.wishes);
   if (words.decimal.empty())
     settle_thousands(result.sheet, result.table,
                      columns_by_headings(result.sheet, result.table, result.wishes));

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "tools/format/columns.h"
+#include "tools/import/reading/title_positions.h"
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/text/error.h"
@@ -57,6 +58,15 @@ std::optional<RunTitle> run_title(const std::string& cell) {
   }
   if (title.run.empty() && title.sense == 0) return std::nullopt;
   return title;
+}
+
+/// The title that states one axis and the position of the axis of the headings: "Achse Y bei X=250 mm".
+std::string title_of_both(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                          const std::string& of_headings, const SheetWishes& wishes) {
+  for (const std::string& cell : title_cells(sheet, table))
+    for (const TitlePosition& one : positions_in_title(cell, wishes))
+      if (one.read && one.axis == of_headings) return cell;
+  return "";
 }
 
 /// The cell among the titles that states the axis without a position and without the axis of the headings:
@@ -139,7 +149,7 @@ void refuse_another_axis(const sheet::Sheet& sheet, const sheet::SheetTable& tab
   const Guess guess(wishes);
   if (titled.empty() || !guess.is_axis(titled)) return;
   for (const MappedColumn& one : wishes.constants)
-    if (guess.is_axis(one.name)) return;
+    if (guess.is_axis(one.name) && !one.of_title) return;
   std::set<std::string> axes;
   for (const SheetColumn& column : columns) {
     if (column.use == SheetColumn::Use::kLeft) continue;
@@ -151,7 +161,9 @@ void refuse_another_axis(const sheet::Sheet& sheet, const sheet::SheetTable& tab
     axes.insert(column.name);
   }
   if (axes.size() != 1 || axes.contains(titled)) return;
-  const std::string axis = *axes.begin(), text = title_of_axis(sheet, table, titled, axis);
+  const std::string axis = *axes.begin();
+  std::string text = title_of_axis(sheet, table, titled, axis);
+  if (text.empty()) text = title_of_both(sheet, table, axis, wishes);
   if (text.empty()) return;
   std::string by_title, by_heading;
   for (std::size_t k = 0; k < columns.size(); ++k) {

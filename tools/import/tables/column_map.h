@@ -15,6 +15,7 @@ struct MappedColumn {
   std::string constant;    // the value, if every row has the same value
   std::string name, unit;  // name and unit of the column in the measurement file
   text::Place place;       // line of the map; an argument of the command line has no file
+  bool of_title = false;   // true: a title of the file states the constant, and a profile does not store it
 };
 
 /// Meaning of the columns in the table of an instrument.

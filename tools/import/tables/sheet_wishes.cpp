@@ -195,7 +195,8 @@ std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& ta
   if (wishes.plausible.deg) text += fmt::format("deviation {}deg\n", *wishes.plausible.deg);
   for (const std::string& heading : wishes.fill) text += "fill " + heading + "\n";
   for (const MappedColumn& constant : wishes.constants)
-    text += "set " + format::heading(constant.name, constant.unit) + " = " + constant.constant + "\n";
+    if (!constant.of_title)
+      text += "set " + format::heading(constant.name, constant.unit) + " = " + constant.constant + "\n";
   return text;
 }
 
