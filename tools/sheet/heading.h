@@ -25,6 +25,7 @@ struct Heading {
   std::string name;          // words of the heading without the unit
   std::string unit;          // unit in the form of the file formats; empty if the heading has no unit
   std::string unknown_unit;  // text at the position of a unit, if this text is not a unit
+  bool joined = false;  // true: the column joins the columns of several runs, and `text` names two of them
 };
 Heading parse_heading(std::string_view cell);
 

@@ -76,4 +76,11 @@ DecimalSign decimal_sign_in(std::string_view cell) {
   return by_comma ? DecimalSign::kComma : DecimalSign::kNeither;
 }
 
+std::size_t decimals_of(std::string_view cell, bool decimal_comma) {
+  const auto sign = cell.rfind(decimal_comma ? ',' : '.');
+  if (sign == std::string_view::npos) return 0;
+  const auto end = cell.find_first_not_of("0123456789", sign + 1);
+  return (end == std::string_view::npos ? cell.size() : end) - sign - 1;
+}
+
 }  // namespace vernier::sheet

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,5 +16,9 @@ std::optional<std::string> plain_number(std::string_view cell, bool decimal_comm
 /// the cell "1,234", the comma can be a decimal sign or a separator of thousands.
 enum class DecimalSign { kNeither, kPoint, kComma, kEither };
 DecimalSign decimal_sign_in(std::string_view cell);
+
+/// Returns the number of digits behind the decimal sign of the number in a cell: 3 for "11.700" and "-0.005
+/// mm".
+std::size_t decimals_of(std::string_view cell, bool decimal_comma);
 
 }  // namespace vernier::sheet

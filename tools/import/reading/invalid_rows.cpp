@@ -67,16 +67,15 @@ bool is_about_another_reading(const std::string& cell) {
 /// The columns of the run or the direction that a remark names beside the word for invalid ("Lauf 2
 /// ungültig"); empty: the remark names none, or all columns.
 std::vector<std::size_t> columns_named(const sheet::SheetTable& table, const std::string& cell) {
-  static const WordSet kRuns = {"lauf", "run", "messung", "messlauf", "messreihe", "durchgang", "passage"};
   std::vector<std::string> names;
   bool run = false, number = false, sense = false;
   for (const std::string& word : words_of(cell)) {
     if (kInvalidWords.contains(word)) continue;
     const bool digits = word.find_first_not_of("0123456789") == std::string::npos;
-    run |= kRuns.contains(word);
+    run |= says_run(word);
     number |= digits;
     sense |= !digits && sense_said(word) != 0;
-    if (!kRuns.contains(word) && !digits && sense_said(word) == 0) return {};
+    if (!says_run(word) && !digits && sense_said(word) == 0) return {};
     names.push_back(word);
   }
   if (!(run && number) && !sense) return {};
@@ -88,7 +87,7 @@ std::vector<std::size_t> columns_named(const sheet::SheetTable& table, const std
       return std::find(heading.begin(), heading.end(), name) != heading.end();
     };
     const bool of_a_run = std::any_of(heading.begin(), heading.end(), [](const auto& word) {
-      return kRuns.contains(word) || sense_said(word) != 0;
+      return says_run(word) || sense_said(word) != 0;
     });
     if (std::all_of(names.begin(), names.end(), has))
       columns.push_back(k);

@@ -12,6 +12,7 @@
 
 #include "tools/import/tables/column_guess.h"
 #include "tools/import/words/sheet_words.h"
+#include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
@@ -38,11 +39,8 @@ bool names_difference(const sheet::Heading& heading) {
 /// Step of the last decimal of a column of numbers.
 double last_digit_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t k) {
   std::size_t decimals = 0;
-  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const std::string& cell = sheet.rows[row][k];
-    const auto sign = cell.find(sheet.decimal_comma ? ',' : '.');
-    if (sign != std::string::npos) decimals = std::max(decimals, cell.size() - sign - 1);
-  }
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+    decimals = std::max(decimals, sheet::decimals_of(sheet.rows[row][k], sheet.decimal_comma));
   return std::pow(10, -static_cast<double>(decimals));
 }
 

@@ -22,18 +22,10 @@
 namespace vernier::importer {
 namespace {
 
-bool names_run(const std::string& word) {
-  static const std::set<std::string> kRunNames = {"lauf",      "run",  "messlauf", "messreihe", "messung",
-                                                  "durchgang", "pass", "zyklus",   "cycle",     "passage"};
-  return kRunNames.contains(word);
-}
-
 /// "Lauf 1 Pos [mm]": the run, and the heading without it; nullopt for other headings.
 std::optional<std::pair<std::string, sheet::Heading>> heading_of_run(const sheet::Heading& heading) {
   const std::vector<std::string> words = text::words_in(heading.text, " \t");
-  constexpr std::size_t kMostDigits = 3;  // more digits are a date or a number of a machine
-  if (words.size() < 3 || !names_run(text::in_small_letters(words[0])) ||
-      words[1].find_first_not_of("0123456789") != std::string::npos || words[1].size() > kMostDigits)
+  if (words.size() < 3 || !says_run(text::in_small_letters(words[0])) || !is_run_number(words[1]))
     return std::nullopt;
   std::string rest;
   for (std::size_t k = 2; k < words.size(); ++k) rest += (k == 2 ? "" : " ") + words[k];
@@ -64,12 +56,6 @@ bool is_position(const sheet::Heading& heading) {
   return Guess::bare(heading.name) == Guess::Bare::kTarget || guess.is_axis(guess.column(heading).name);
 }
 
-bool is_number_of_run(const std::string& word) {
-  constexpr std::size_t kMostDigits = 3;  // more digits are a date or a number of a machine
-  return !word.empty() && word.size() <= kMostDigits &&
-         word.find_first_not_of("0123456789") == std::string::npos;
-}
-
 /// "Lauf 1 Pos [mm]", "Run 1 fwd Pos", "1+ Pos", "Dev Run 2".
 SideHeading side_heading(const sheet::Heading& heading, std::size_t column) {
   SideHeading found;
@@ -78,17 +64,16 @@ SideHeading side_heading(const sheet::Heading& heading, std::size_t column) {
   std::string rest;
   for (std::size_t k = 0; k < words.size(); ++k) {
     const std::string small = text::in_small_letters(words[k]);
-    const bool next_number = k + 1 < words.size() && is_number_of_run(words[k + 1]);
+    const bool next_number = k + 1 < words.size() && is_run_number(words[k + 1]);
     const std::string digits = small.substr(0, small.size() - 1);
     const bool signed_run =
-        small.size() > 1 && (small.back() == '+' || small.back() == '-') && is_number_of_run(digits);
-    if (found.run.empty() && names_run(small) && next_number) {
+        small.size() > 1 && (small.back() == '+' || small.back() == '-') && is_run_number(digits);
+    if (found.run.empty() && says_run(small) && next_number) {
       found.run = words[++k];
     } else if (found.run.empty() && found.sense == 0 && signed_run) {
       found.run = digits;
       found.sense = small.back() == '+' ? 1 : -1;
-    } else if (found.sense == 0 && !is_number_of_run(small) && !says_target(small) &&
-               sense_said(small) != 0) {
+    } else if (found.sense == 0 && !is_run_number(small) && !says_target(small) && sense_said(small) != 0) {
       found.sense = sense_said(small);
     } else {
       rest += (rest.empty() ? "" : " ") + words[k];
@@ -146,8 +131,7 @@ SideGroups groups_of(const sheet::Sheet& sheet, const sheet::SheetTable& table) 
   std::vector<SideHeading> list;
   for (std::size_t k = 0; k < table.headings.size(); ++k) {
     if (!has_cells(sheet, table, k)) continue;
-    const std::vector<std::string> words = heading_words(text::in_small_letters(table.headings[k].name));
-    if (std::any_of(words.begin(), words.end(), says_statistic))
+    if (names_statistic(table.headings[k]))
       groups.computed.push_back(k);
     else
       list.push_back(side_heading(table.headings[k], k));
@@ -210,11 +194,12 @@ void stack(sheet::Sheet& sheet, sheet::SheetTable& table, SideGroups& groups) {
   const std::vector<SideHeading>&first = groups.of[groups.order.front()],
         &last = groups.of[groups.order.back()];
   for (std::size_t i = 0; i < first.size(); ++i) {
-    headings.push_back(first[i].rest);
-    if (first[i].rest.text != last[i].rest.text) headings.back().text += " to " + last[i].rest.text;
+    const bool same = first[i].rest.text == last[i].rest.text;
+    headings.push_back(same ? first[i].rest
+                            : heading_of_joined(first[i].rest, first[i].rest.text, last[i].rest.text));
   }
-  if (senses) headings.push_back({"direction", "sense", "", ""});
-  if (runs) headings.push_back({format::columns::kRun, format::columns::kRun, "", ""});
+  if (senses) headings.push_back(heading_of_directions());
+  if (runs) headings.push_back(heading_of_runs());
   std::size_t width = headings.size();
   for (std::size_t row = 0; row < table.first_data; ++row) width = std::max(width, rows[row].size());
   for (auto& row : rows) row.resize(width);
@@ -280,7 +265,7 @@ bool stack_whole_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
       line.push_back(sheet.line[row]);
     }
   table.headings = first;
-  table.headings.push_back({format::columns::kRun, format::columns::kRun, "", ""});
+  table.headings.push_back(heading_of_runs());
   std::size_t width = table.headings.size();
   for (std::size_t row = 0; row < table.first_data; ++row) width = std::max(width, rows[row].size());
   for (auto& row : rows) row.resize(width);

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "tools/format/columns.h"
 #include "tools/import/reading/title_positions.h"
@@ -27,17 +28,9 @@ struct RunTitle {
   int sense = 0;
 };
 
-bool is_run_number(const std::string& word) {
-  constexpr std::size_t kMostDigits = 3;  // more digits are a date or a number of a machine
-  return word.size() <= kMostDigits && !word.empty() &&
-         word.find_first_not_of("0123456789") == std::string::npos;
-}
-
 /// Run and direction of a title that says nothing else: "Lauf 2 rückwärts", "Run 3, backward", "Achse X
 /// zurück".
 std::optional<RunTitle> run_title(const std::string& cell) {
-  static const TitleWords kRuns = {"lauf",   "run",   "messlauf", "messreihe",   "durchgang", "pass",
-                                   "zyklus", "cycle", "messung",  "measurement", "fahrt"};
   static const TitleWords kBeside = {"richtung", "direction", "nr", "no", "achse", "axis", "axe"};
   static const TitleWords kAxes = {"X", "Y", "Z", "A", "B", "C", "U", "V", "W"};
   RunTitle title{"", cell, 0};
@@ -47,7 +40,7 @@ std::optional<RunTitle> run_title(const std::string& cell) {
     if (is_run_number(small)) {
       if (!title.run.empty() || !said) return std::nullopt;
       title.run = small;
-    } else if (kRuns.contains(small)) {
+    } else if (says_run(small)) {
       said = true;
     } else if (sense_said(small) != 0) {
       if (title.sense != 0) return std::nullopt;
@@ -102,11 +95,11 @@ bool has_column_of(const sheet::SheetTable& table, bool (*is)(const std::string&
                      [&](const sheet::Heading& one) { return is(guess.column(one).name); });
 }
 
-void add_title_column(sheet::Sheet& sheet, sheet::SheetTable& table, const std::string& heading,
+void add_title_column(sheet::Sheet& sheet, sheet::SheetTable& table, sheet::Heading heading,
                       const std::string& value) {
   for (std::size_t row = 0; row < sheet.rows.size(); ++row)
     sheet.rows[row].push_back(row >= table.first_data && !sheet::is_blank(sheet.rows[row]) ? value : "");
-  table.headings.push_back({heading == "sense" ? "direction" : heading, heading, "", ""});
+  table.headings.push_back(std::move(heading));
 }
 
 }  // namespace
@@ -132,8 +125,8 @@ void add_run_of_title(sheet::Sheet& sheet, sheet::SheetTable& table,
   const bool sense = all.sense != 0 && !stated([](const std::string& name) { return is_sense(name); });
   if (!run && !sense) return;
   // A direction of the survey ("vorwärts") is read as that of increasing positions, as in a heading.
-  if (sense) add_title_column(sheet, table, "sense", std::to_string(all.sense));
-  if (run) add_title_column(sheet, table, format::columns::kRun, all.run);
+  if (sense) add_title_column(sheet, table, heading_of_directions(), std::to_string(all.sense));
+  if (run) add_title_column(sheet, table, heading_of_runs(), all.run);
   sheet.written.clear();
   sheet.notes.push_back(
       fmt::format("the title \"{}\" states {}{}{} of this table: each row gets {}", all.text,

@@ -11,6 +11,7 @@
 
 #include "tools/format/units.h"
 #include "tools/maths/median.h"
+#include "tools/sheet/sheet_number.h"
 
 namespace vernier::importer {
 namespace {
@@ -47,15 +48,6 @@ double median_step(const std::vector<double>& values) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(std::abs(values[i] - values[i - 1]));
   return maths::median(steps);
-}
-
-/// Number of decimals that a cell is written with.
-std::size_t decimals_written(const std::string& cell, bool comma) {
-  const auto sign = cell.rfind(comma ? ',' : '.');
-  if (sign == std::string::npos) return 0;
-  std::size_t end = sign + 1;
-  while (end < cell.size() && cell[end] >= '0' && cell[end] <= '9') ++end;
-  return end - sign - 1;
 }
 
 /// The readings of one column as deviations in mm or deg, with the rows of the sheet.
@@ -190,7 +182,7 @@ std::vector<SizeDoubt> judge_mixed_units(sheet::Sheet& sheet, const sheet::Sheet
       const auto value = sheet::number_at(sheet, row, k);
       if (!value || *value == 0) continue;  // 0 has no size
       cells.push_back({std::abs(*value) * unit->factor,
-                       decimals_written(sheet.rows[row][k], sheet.decimal_comma), sheet.line[row]});
+                       sheet::decimals_of(sheet.rows[row][k], sheet.decimal_comma), sheet.line[row]});
     }
     SizeDoubt doubt = mixed_units_of(cells, unit->dimension == format::Dimension::kAngle);
     if (doubt.text.empty()) continue;

@@ -13,6 +13,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/maths/median.h"
+#include "tools/sheet/sheet_number.h"
 
 namespace vernier::importer {
 namespace {
@@ -47,13 +48,6 @@ constexpr double kResidualShare = 0.25;   // of the readings; unrelated runs hav
 constexpr std::size_t kFewestCommon = 5;  // fewer targets agree by chance
 constexpr std::size_t kMostScales = 200;  // more runs are labels of the rows
 
-std::size_t decimals_of(const std::string& cell, bool comma) {
-  const auto sign = cell.rfind(comma ? ',' : '.');
-  if (sign == std::string::npos) return 0;
-  const auto end = cell.find_first_not_of("0123456789", sign + 1);
-  return (end == std::string::npos ? cell.size() : end) - sign - 1;
-}
-
 struct TypedCell {
   std::size_t row = 0;
   double value = 0;
@@ -65,7 +59,7 @@ std::vector<TypedCell> typed_cells_of(const sheet::Sheet& sheet, const sheet::Sh
   std::vector<TypedCell> cells;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
     if (const auto value = sheet::number_at(sheet, row, k))
-      cells.push_back({row, *value, decimals_of(sheet.rows[row][k], sheet.decimal_comma)});
+      cells.push_back({row, *value, sheet::decimals_of(sheet.rows[row][k], sheet.decimal_comma)});
   return cells;
 }
 

@@ -125,6 +125,16 @@ bool names_correction(const sheet::Heading& heading) {
   return correction;
 }
 
+sheet::Heading heading_of_directions() { return {"direction", "sense", "", ""}; }
+sheet::Heading heading_of_runs() { return {columns::kRun, columns::kRun, "", ""}; }
+sheet::Heading heading_of_joined(const sheet::Heading& named, const std::string& first,
+                                 const std::string& last) {
+  sheet::Heading heading = named;
+  heading.text = fmt::format("{} to {}", first, last);
+  heading.joined = true;
+  return heading;
+}
+
 bool Guess::is_axis(const std::string& word) const {
   if (!wishes_.axes.empty())
     return std::find(wishes_.axes.begin(), wishes_.axes.end(), word) != wishes_.axes.end();

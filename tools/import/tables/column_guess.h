@@ -34,6 +34,15 @@ std::optional<std::string> reading_of(const std::string& axis);
 /// own formula is a deviation too.
 bool names_correction(const sheet::Heading& heading);
 
+/// Returns the heading of a column that the import adds for the approach direction, or for the run, of each
+/// row.
+sheet::Heading heading_of_directions();
+sheet::Heading heading_of_runs();
+/// Returns the heading of a column that joins the columns of several runs: its name, and the texts of the
+/// first and the last heading, by which the messages name the column.
+sheet::Heading heading_of_joined(const sheet::Heading& named, const std::string& first,
+                                 const std::string& last);
+
 /// Index of the columns by name, so that the time to find a column does not depend on the number of columns.
 class Readings {
  public:

@@ -366,7 +366,7 @@ void split_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
     }
     sheet.rows[row].push_back(std::move(direction));
   }
-  table.headings.push_back({"direction", "sense", "", ""});
+  table.headings.push_back(heading_of_directions());
   sheet.notes.push_back(
       fmt::format("\"{}\" has the run and the approach direction in one cell: they are read as "
                   "two columns",

@@ -96,13 +96,6 @@ std::set<std::string> measured_axes(const std::vector<SheetColumn>& columns,
   return moved;
 }
 
-bool names_statistic(const sheet::Heading& heading) {
-  if (says_standard_deviation(heading.name)) return true;
-  const std::vector<std::string> words = heading_words(heading.name);
-  return std::any_of(words.begin(), words.end(),
-                     [](const std::string& word) { return says_statistic(text::in_small_letters(word)); });
-}
-
 /// If no heading names an axis and the titles do, a target or an actual position belongs to that axis.
 void settle_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
                  const Guess& guess) {

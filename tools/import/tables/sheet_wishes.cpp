@@ -178,11 +178,7 @@ std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& ta
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     // The readings of runs side by side have a name for any number of runs.
-    const bool runs =
-        table.headings[k].text.find(" to ") != std::string::npos &&
-        (table.headings[k].name.starts_with("Deviation") || table.headings[k].name.starts_with("Actual")) &&
-        !table.headings[k].text.starts_with(table.headings[k].name);
-    const std::string& heading = runs ? table.headings[k].name : table.headings[k].text;
+    const std::string& heading = table.headings[k].joined ? table.headings[k].name : table.headings[k].text;
     if (column.by_values)
       text += fmt::format("# {}: position or deviation, by the values of each file\n", heading);
     else if (column.use == SheetColumn::Use::kLeft)

@@ -14,6 +14,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/tables/column_guess.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
 #include "tools/import/words/title_units.h"
@@ -81,25 +82,15 @@ std::vector<Token> tokens_of(const std::string& name) {
   return tokens;
 }
 
-/// A direction of the survey and not of the axis.
-bool says_relative(const std::string& word) {
-  static const std::set<std::string> kWords = {"hin",   "her",  "zurück",   "zur",     "zurueck",
-                                               "vor",   "rück", "rueck",    "forward", "fwd",
-                                               "forth", "back", "backward", "bwd"};
-  return kWords.contains(word);
-}
-
 /// A direction against gravity, which is not always that of increasing positions.
 bool says_height(const std::string& word) {
   return word == "up" || word == "down" || word == "auf" || word == "ab";
 }
 
-bool says_run(const std::string& word) {
-  static const std::set<std::string> kRunWords = {
-      "run",    "runs",  "lauf", "messung", "messlauf", "messreihe",   "durchgang",
-      "zyklus", "cycle", "pass", "serie",   "series",   "measurement", "reihe",
-      "test",   "nr",    "no",   "r",       "m",        "mr",          "n"};
-  return kRunWords.contains(word);
+/// A heading of a run may have a mark in place of a word: "Nr 1", "M1", "Test 1".
+bool marks_run(const std::string& word) {
+  static const std::set<std::string> kMarks = {"runs", "test", "nr", "no", "r", "m", "mr", "n"};
+  return says_run(word) || kMarks.contains(word);
 }
 
 /// A sign between a word and the next word joins them ("Lauf-1"), else it is a direction.
@@ -144,13 +135,13 @@ std::optional<RunColumn> run_column(const sheet::Heading& heading) {
     } else if (token.piece == Piece::kSign) {
       if (!joins(tokens, k)) by_sign = token.text == "\u2013" ? -1 : sense_said(token.text);
       column.relative |= token.text == "\u2191" || token.text == "\u2193";
-    } else if (says_run(small)) {
+    } else if (marks_run(small)) {
       said = true;
     } else if (sense_said(small) != 0) {
       if (by_word != 0) return std::nullopt;
       by_word = sense_said(small);
-      column.relative |= says_relative(small) || says_height(small);
-      column.forth |= says_relative(small);
+      column.relative |= says_way(small) || says_height(small);
+      column.forth |= says_way(small);
       column.pos |= small == "pos";
     } else if (says_deviation(small)) {
       column.deviation = said = true;
@@ -224,11 +215,10 @@ sheet::Heading heading_of_readings(sheet::Sheet& sheet, const sheet::SheetTable&
     const double read = spread_of(sheet, table, runs.front().column);
     for (const std::size_t other : others) {
       const std::vector<std::string> words = heading_words(table.headings[other].name);
-      const bool derived = std::any_of(words.begin(), words.end(), [](const std::string& word) {
-        const std::string small = text::in_small_letters(word);
-        return says_statistic(small) || says_deviation(small);
+      const bool deviation = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+        return says_deviation(text::in_small_letters(word));
       });
-      if (derived) continue;  // a mean of the runs
+      if (deviation || names_statistic(table.headings[other])) continue;  // a mean of the runs
       const double ratio = spread_of(sheet, table, other) > 0 ? read / spread_of(sheet, table, other) : 0;
       if (!(ratio > 0.9 && ratio < 1.1)) continue;
       all.measured = true;
@@ -238,11 +228,11 @@ sheet::Heading heading_of_readings(sheet::Sheet& sheet, const sheet::SheetTable&
   sheet::Heading heading;
   heading.name = std::string(all.measured && !all.deviation ? "Actual" : "Deviation") +
                  (all.axis.empty() ? "" : " " + all.axis);
-  // The messages name the readings by the headings of the runs, which state the sign too.
-  heading.text = table.headings[runs.front().column].text + " to " + table.headings[runs.back().column].text;
   heading.unit = unknown.empty() ? all.unit : "";
   heading.unknown_unit = unknown;
-  return heading;
+  // The headings of the runs state the sign too.
+  return heading_of_joined(heading, table.headings[runs.front().column].text,
+                           table.headings[runs.back().column].text);
 }
 
 /// Returns 1 if the positions increase from row to row, -1 if they decrease, else 0. `enough`: with fewer
@@ -315,7 +305,7 @@ std::pair<int, sheet::Heading> position_of_direction(const sheet::Heading& headi
   std::string name;
   for (const std::string& word : heading_words(heading.name)) {
     const std::string small = text::in_small_letters(word);
-    if (says_relative(small)) {
+    if (says_way(small)) {
       if (sense != 0) return {0, heading};
       sense = sense_said(small);
       continue;
@@ -421,8 +411,8 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   const sheet::Heading readings = heading_of_readings(sheet, table, runs, others);
   std::vector<sheet::Heading> headings;
   for (const std::size_t k : others) headings.push_back(table.headings[k]);
-  if (directed) headings.push_back({"direction", "sense", "", ""});
-  headings.push_back({format::columns::kRun, format::columns::kRun, "", ""});
+  if (directed) headings.push_back(heading_of_directions());
+  headings.push_back(heading_of_runs());
   headings.push_back(readings);
   std::vector<std::vector<std::string>> rows;
   std::vector<std::size_t> line;

@@ -86,6 +86,12 @@ const WordSet kBackWords = {"-1",
                             "1",
                             "\u2193",
                             "\u2190"};
+/// Words of a run, in headings, titles and remarks.
+const WordSet kRunWords = {"lauf",        "run",   "messlauf", "messreihe", "messung",
+                           "durchgang",   "pass",  "passage",  "zyklus",    "cycle",
+                           "measurement", "fahrt", "serie",    "series",    "reihe"};
+const WordSet kWayWords = {"hin",   "her",     "zurück", "zur",   "zurueck", "vor",      "rück",
+                           "rueck", "forward", "fwd",    "forth", "back",    "backward", "bwd"};
 
 }  // namespace
 
@@ -102,6 +108,19 @@ bool says_standard_deviation(std::string_view text) {
   const std::string small = text::in_small_letters(text);
   return small.find("cart-type") != std::string::npos || small.find("cart type") != std::string::npos;
 }
+bool names_statistic(const sheet::Heading& heading) {
+  if (says_standard_deviation(heading.name)) return true;
+  const std::vector<std::string> words = heading_words(heading.name);
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return says_statistic(text::in_small_letters(word)); });
+}
+bool says_run(const std::string& word) { return kRunWords.contains(word); }
+bool is_run_number(std::string_view word) {
+  constexpr std::size_t kMostDigits = 3;
+  return !word.empty() && word.size() <= kMostDigits &&
+         word.find_first_not_of("0123456789") == std::string_view::npos;
+}
+bool says_way(const std::string& word) { return kWayWords.contains(word); }
 bool says_correction(const std::string& word) {
   return kCorrectionWords.contains(word) ||
          std::any_of(kCorrectionStarts.begin(), kCorrectionStarts.end(),

@@ -24,6 +24,14 @@ bool says_display(const std::string& word);
 bool says_statistic(const std::string& word);
 /// True for the French words of a standard deviation: "Écart-type".
 bool says_standard_deviation(std::string_view text);
+/// True for a heading with a word of a statistic, in one of its words: "Mittelwert hin [um]".
+bool names_statistic(const sheet::Heading& heading);
+/// True for a word of a run, in small letters: "lauf", "messreihe", "pass". A number follows it.
+bool says_run(const std::string& word);
+/// True for the number of a run, with one to three digits. More digits are a date or a number of a machine.
+bool is_run_number(std::string_view word);
+/// True for a direction of the survey and not of the axis: "hin", "rück", "forward".
+bool says_way(const std::string& word);
 bool says_deviation(const std::string& word);
 /// True for a correction, the opposite of a deviation: "Korrektur", "Korrekturtabelle".
 bool says_correction(const std::string& word);
