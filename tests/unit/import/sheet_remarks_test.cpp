@@ -106,5 +106,37 @@ TEST(SheetRemarks, TwoReadingsOfAnAxisAreNamedByTheirHeadings) {
             HasSubstr("--leave \"Abweichung X [um]\" or --leave \"Fehler X [um]\"")));
 }
 
+TEST(SheetRemarks, VerdictsAreNoMeasurement) {
+  const auto rows = [](const std::string& heading, const std::string& good, const std::string& bad) {
+    return "X [mm];dX [um];" + heading + "\n0;1;" + good + "\n50;2;" + bad + "\n100;3;" + good + "\n";
+  };
+  const std::string read_as = "X[mm],x[mm]\n0,0.001\n50,50.002\n100,100.003\nnote: the column \"";
+  for (const char* const heading : {"OK?", "i.O.", "n.i.O.", "Pass/Fail", "Bewertung", "i.O./n.i.O.", "OK"}) {
+    EXPECT_THAT(read(rows(heading, "1", "0")), StartsWith(read_as + heading + "\" has a verdict")) << heading;
+    EXPECT_THAT(read(rows(heading, "", "x")), StartsWith(read_as + heading + "\" has a verdict")) << heading;
+  }
+  EXPECT_THAT(read(rows("Pass", "Pass", "Fail")), StartsWith(read_as + "Pass\" has a verdict"));
+  EXPECT_THAT(read(rows("Ergebnis", "i.O.", "n. i. O.")), StartsWith(read_as + "Ergebnis\" has a verdict"));
+  EXPECT_THAT(read(rows("Remark", "", "1")), StartsWith(read_as + "Remark\" has remarks"));
+  // Words of a state, remarks in words and numbers of a run are labels.
+  EXPECT_THAT(read(rows("Status", "kalt", "warm")), StartsWith("X[mm],x[mm],Status\n0,0.001,kalt\n"));
+  EXPECT_THAT(read(rows("Remark", "", "slow")), StartsWith("X[mm],x[mm],Remark\n"));
+  EXPECT_THAT(read(rows("Pass", "1", "2")), StartsWith("X[mm],x[mm],run\n"));
+  SheetWords words;
+  words.columns = {"label=OK?"};
+  EXPECT_THAT(read(rows("OK?", "ja", "nein"), words), StartsWith("X[mm],x[mm],label\n0,0.001,ja\n"));
+}
+
+TEST(SheetRemarks, VerdictsBesideRuns) {
+  EXPECT_THAT(read("X [mm];Lauf 1 [um];n.i.O.;Lauf 2 [um];OK?\n0;1;;2;1\n50;2;x;3;0\n100;3;;4;1\n"),
+              StartsWith("X[mm],run,x[mm]\n0,1,0.001\n50,1,50.002\n"));
+  EXPECT_THAT(read("Achse X\nLauf 1 Pos [mm];Lauf 1 Abw [um];Lauf 2 Pos [mm];Lauf 2 Abw [um];OK?\n"
+                   "0;1;10;2;ok\n50;2;60;3;ok\n100;3;110;4;n.i.O.\n"),
+              StartsWith("X[mm],x[mm],run\n0,0.001,1\n50,50.002,1\n100,100.003,1\n10,10.002,2\n"));
+  // A reading that is marked as invalid is no reading.
+  EXPECT_THAT(read("X [mm];dX [um];Valid\n0;1;1\n50;2;0\n100;3;1\n"),
+              StartsWith("X[mm],x[mm]\n0,0.001\n100,100.003\n"));
+}
+
 }  // namespace
 }  // namespace vernier::sheet_remarks_test

@@ -56,12 +56,34 @@ TEST(SideRuns, PositionsBesideADirectionAlone) {
               StartsWith("X[mm],x[mm],dirX\n0,0.001,1\n50,50.002,1\n100,100.003,1\n100,100.004,-1\n"));
 }
 
-TEST(SideRuns, OfDifferentUnitsAreRefused) {
+TEST(SideRuns, OfDifferentUnitsAreConverted) {
   EXPECT_THAT(
-      read("Axis: X\nRun 1 Pos [mm],Run 1 Dev [um],Run 2 Pos [in],Run 2 Dev [thou]\n0,1,0,0.1\n"
-           "50,2,2,0.2\n100,3,4,0.1\n"),
-      StartsWith("refused: s.csv:2: \"Run 2 Pos [in]\": the runs are side by side, and this column has "
-                 "another unit than \"Run 1 Pos [mm]\""));
+      read("Axis: X\nRun 1 Pos [mm],Run 1 Dev [um],Run 2 Pos [in],Run 2 Dev [thou]\n0,1.0,0,0.1\n"
+           "50,2.0,2,0.2\n100,3.0,4,0.1\n"),
+      AllOf(
+          StartsWith(
+              "X[mm],x[mm],run\n0,0.001,1\n50,50.002,1\n100,100.003,1\n0,0.00254,2\n50.8,50.80508,2\n"),
+          HasSubstr("note: the runs have several units: the values of \"Run 2 Dev [thou]\" are converted to "
+                    "[um], the unit of \"Run 1 Dev [um]\"")));
+  EXPECT_THAT(read("X [mm];Run 1 [um];Run 2 [mm]\n0;1,2;0,0017\n50;2,0;0,0030\n100;3,1;-0,0042\n"),
+              AllOf(StartsWith("X[mm],run,x[mm]\n0,1,0.0012\n50,1,50.002\n100,1,100.0031\n0,2,0.0017\n50,2,"
+                               "50.003\n100,2,99.9958\n"),
+                    HasSubstr("the values of \"Run 2 [mm]\" are converted to [um]")));
+  // A length and an angle have no common unit.
+  EXPECT_THAT(read("X [mm];Run 1 [um];Run 2 [deg]\n0;1;2\n50;2;3\n100;3;4\n"), StartsWith("refused"));
+}
+
+TEST(SideRuns, AConvertedRunInTheWrongUnitIsRefused) {
+  EXPECT_THAT(
+      read("X [mm];Run 1 [um];Run 2 [mm]\n0;1,2;1,7\n50;2,0;3,0\n100;3,1;4,2\n150;3,5;4,4\n200;3,9;5\n"),
+      AllOf(StartsWith("refused"), HasSubstr("Run 2")));
+}
+
+TEST(SideRuns, RemarksBelongToTheRowsOfAllRuns) {
+  EXPECT_THAT(read("Achse X\nLauf 1 Pos [mm];Lauf 1 Abw [um];Lauf 2 Pos [mm];Lauf 2 Abw [um];Bemerkung\n"
+                   "0;1;10;2;\n50;2;60;3;warm\n100;3;110;4;\n"),
+              StartsWith("X[mm],x[mm],Bemerkung,run\n0,0.001,,1\n50,50.002,warm,1\n100,100.003,,1\n"
+                         "10,10.002,,2\n60,60.003,warm,2\n"));
 }
 
 TEST(SideRuns, ARemedyDoesNotSetTheMeasuredAxis) {

@@ -15,6 +15,7 @@
 #include "tools/import/reading/side_runs.h"
 #include "tools/import/reading/title_lines.h"
 #include "tools/import/reading/title_positions.h"
+#include "tools/import/reading/verdict_columns.h"
 #include "tools/import/sizes/deviation_sizes.h"
 #include "tools/import/sizes/outlying_cells.h"
 #include "tools/import/sizes/position_sizes.h"
@@ -293,6 +294,8 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   std::vector<std::string> named = words.left;
   named.insert(named.end(), words.columns.begin(), words.columns.end());
   named.insert(named.end(), words.deviations.begin(), words.deviations.end());
+  for (const SheetWishes::Assignment& wish : result.wishes.assignments) named.push_back(wish.heading);
+  leave_verdicts(result.sheet, result.table, named);
   leave_differences(result.sheet, result.table, named);
   bool unfolded_axes =
       !axes_left && unfold_axes(result.sheet, result.table, result.wishes, AxisCells::kAboveToo);

@@ -14,7 +14,9 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/reading/verdict_columns.h"
 #include "tools/import/tables/column_guess.h"
+#include "tools/import/tables/run_units.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
@@ -124,6 +126,7 @@ struct SideGroups {
   std::vector<std::pair<std::string, int>> order;
   std::map<std::pair<std::string, int>, std::vector<SideHeading>> of;
   std::vector<std::size_t> computed;  // columns of means
+  std::vector<std::size_t> shared;    // columns of remarks, which are about the rows of all runs
 };
 
 SideGroups groups_of(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
@@ -133,6 +136,8 @@ SideGroups groups_of(const sheet::Sheet& sheet, const sheet::SheetTable& table) 
     if (!has_cells(sheet, table, k)) continue;
     if (names_statistic(table.headings[k]))
       groups.computed.push_back(k);
+    else if (names_remark(table.headings[k]))
+      groups.shared.push_back(k);
     else
       list.push_back(side_heading(table.headings[k], k));
   }
@@ -158,16 +163,28 @@ SideGroups groups_of(const sheet::Sheet& sheet, const sheet::SheetTable& table) 
                        (key.second == 0) == (groups.order.front().second == 0);
     if (names.size() != columns.size() || columns.size() < 2 || !alike) return {};
   }
-  for (const auto& [key, columns] : groups.of)
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      if (columns[i].rest.unit != first[i].rest.unit)
-        throw text::InputError(
-            {sheet.file, sheet.line[table.heading_row]}, table.headings[columns[i].column].text,
-            fmt::format(
-                "the runs are side by side, and this column has another unit than \"{}\": convert the "
-                "values of one of the two columns, and write the same unit in both headings",
-                table.headings[first[i].column].text));
   return groups;
+}
+
+/// Converts columns with the same meaning to the unit of the first run.
+void settle_side_units(sheet::Sheet& sheet, sheet::SheetTable& table, const SideGroups& groups) {
+  const std::vector<SideHeading>& first = groups.of.at(groups.order.front());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    std::vector<std::size_t> columns;
+    for (const auto& key : groups.order) {
+      columns.push_back(groups.of.at(key)[i].column);
+      table.headings[columns.back()].unit = groups.of.at(key)[i].rest.unit;
+    }
+    const auto other = std::find_if(columns.begin(), columns.end(), [&](std::size_t k) {
+      return table.headings[k].unit != first[i].rest.unit;
+    });
+    if (other != columns.end() && !convert_to_one_unit(sheet, table, columns))
+      throw text::InputError(
+          {sheet.file, sheet.line[table.heading_row]}, table.headings[*other].text,
+          fmt::format("the runs are side by side, and this column has another unit than \"{}\": convert the "
+                      "values of one of the two columns, and write the same unit in both headings",
+                      table.headings[first[i].column].text));
+  }
 }
 
 /// Writes the groups one below the other, with a column for the run and one for the direction.
@@ -182,6 +199,7 @@ void stack(sheet::Sheet& sheet, sheet::SheetTable& table, SideGroups& groups) {
       std::vector<std::string> cells;
       for (const SideHeading& one : groups.of[key]) cells.push_back(sheet.rows[row][one.column]);
       if (sheet::is_blank(cells)) continue;  // a shorter run
+      for (const std::size_t k : groups.shared) cells.push_back(sheet.rows[row][k]);
       if (senses) cells.push_back(std::to_string(key.second));
       if (runs) cells.push_back(key.first);
       rows.push_back(std::move(cells));
@@ -198,6 +216,7 @@ void stack(sheet::Sheet& sheet, sheet::SheetTable& table, SideGroups& groups) {
     headings.push_back(same ? first[i].rest
                             : heading_of_joined(first[i].rest, first[i].rest.text, last[i].rest.text));
   }
+  for (const std::size_t k : groups.shared) headings.push_back(table.headings[k]);
   if (senses) headings.push_back(heading_of_directions());
   if (runs) headings.push_back(heading_of_runs());
   std::size_t width = headings.size();
@@ -222,71 +241,47 @@ void stack(sheet::Sheet& sheet, sheet::SheetTable& table, SideGroups& groups) {
                                  : "of directions"));
 }
 
-}  // namespace
-
-namespace {
-
 /// Runs with the same headings behind the word for the run; a group may have positions for each direction.
-bool stack_whole_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
-  std::vector<std::string> order;                                  // of the runs
-  std::map<std::string, std::vector<std::size_t>> columns_of;      // by run
-  std::map<std::string, std::vector<sheet::Heading>> headings_of;  // by run
+/// Empty: the table has another form.
+SideGroups whole_runs_of(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  SideGroups groups;
   for (std::size_t k = 0; k < table.headings.size(); ++k) {
     if (!has_cells(sheet, table, k)) continue;
-    auto one = heading_of_run(table.headings[k]);
-    if (!one) return false;
-    if (!columns_of.contains(one->first)) order.push_back(one->first);
-    columns_of[one->first].push_back(k);
-    headings_of[one->first].push_back(std::move(one->second));
-  }
-  if (order.size() < 2) return false;
-  const std::vector<sheet::Heading> first = headings_of[order.front()];
-  const SheetWishes usual;
-  const Guess guess(usual);
-  const bool positions = std::any_of(first.begin(), first.end(), [&](const sheet::Heading& one) {
-    return Guess::bare(one.name) == Guess::Bare::kTarget || guess.is_axis(guess.column(one).name);
-  });
-  if (!positions) return false;  // one column of positions for all runs: unfold_runs
-  for (const std::string& run : order)
-    if (!std::equal(first.begin(), first.end(), headings_of[run].begin(), headings_of[run].end(),
-                    [](const sheet::Heading& a, const sheet::Heading& b) { return a.text == b.text; }))
-      return false;
-  std::vector<std::vector<std::string>> rows(
-      sheet.rows.begin(), sheet.rows.begin() + static_cast<std::ptrdiff_t>(table.first_data));
-  std::vector<std::size_t> line(sheet.line.begin(),
-                                sheet.line.begin() + static_cast<std::ptrdiff_t>(table.first_data));
-  for (const std::string& run : order)
-    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-      std::vector<std::string> cells;
-      for (const std::size_t k : columns_of[run]) cells.push_back(sheet.rows[row][k]);
-      if (sheet::is_blank(cells)) continue;  // a shorter run
-      cells.push_back(run);
-      rows.push_back(std::move(cells));
-      line.push_back(sheet.line[row]);
+    if (names_remark(table.headings[k])) {
+      groups.shared.push_back(k);
+      continue;
     }
-  table.headings = first;
-  table.headings.push_back(heading_of_runs());
-  std::size_t width = table.headings.size();
-  for (std::size_t row = 0; row < table.first_data; ++row) width = std::max(width, rows[row].size());
-  for (auto& row : rows) row.resize(width);
-  while (table.headings.size() < width)
-    table.headings.push_back(sheet::parse_heading(std::to_string(table.headings.size() + 1)));
-  sheet.rows = std::move(rows);
-  sheet.line = std::move(line);
-  sheet.written.clear();
-  sheet.notes.push_back(
-      fmt::format("the runs {} are side by side, each with its own positions: their rows are "
-                  "read one run below the other, with a column run",
-                  text::joined(order, ", ")));
-  return true;
+    auto one = heading_of_run(table.headings[k]);
+    if (!one) return {};
+    SideHeading heading;
+    heading.column = k;
+    heading.run = std::move(one->first);
+    heading.rest = std::move(one->second);
+    if (!groups.of.contains(heading.key())) groups.order.push_back(heading.key());
+    groups.of[heading.key()].push_back(std::move(heading));
+  }
+  if (groups.order.size() < 2) return {};
+  const std::vector<SideHeading>& first = groups.of[groups.order.front()];
+  const bool positions =
+      std::any_of(first.begin(), first.end(), [](const SideHeading& one) { return is_position(one.rest); });
+  if (!positions) return {};  // one column of positions for all runs: unfold_runs
+  for (const auto& [key, columns] : groups.of)
+    if (!std::equal(first.begin(), first.end(), columns.begin(), columns.end(),
+                    [](const SideHeading& a, const SideHeading& b) { return a.rest.text == b.rest.text; }))
+      return {};
+  return groups;
 }
 
 }  // namespace
 
 bool stack_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   if (!table.has_headings) return false;
-  if (stack_whole_runs(sheet, table)) return true;
-  SideGroups groups = groups_of(sheet, table);
+  SideGroups groups = whole_runs_of(sheet, table);
+  if (!groups.order.empty()) {
+    stack(sheet, table, groups);
+    return true;
+  }
+  groups = groups_of(sheet, table);
   if (groups.order.empty()) return false;
   // Two directions with positions in their headings: unfold_runs.
   const auto& first = groups.of[groups.order.front()];
@@ -294,6 +289,7 @@ bool stack_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
     return side_heading(table.headings[one.column], one.column).keyed();
   });
   if (named && groups.order.front().first.empty()) return false;
+  settle_side_units(sheet, table, groups);
   stack(sheet, table, groups);
   return true;
 }

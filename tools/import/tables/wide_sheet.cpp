@@ -15,6 +15,7 @@
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/import/tables/column_guess.h"
+#include "tools/import/tables/run_units.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
 #include "tools/import/words/title_units.h"
@@ -297,6 +298,15 @@ bool belong_together(const std::vector<RunColumn>& runs) {
   return !pos || back;  // "Pos" without its counterpart is a position
 }
 
+/// Runs in several units are converted to the unit of the first one, if they belong together otherwise.
+void settle_run_units(sheet::Sheet& sheet, sheet::SheetTable& table, std::vector<RunColumn>& runs) {
+  std::vector<RunColumn> alike = runs;
+  for (RunColumn& one : alike) one.unit = runs.front().unit;
+  std::vector<std::size_t> columns;
+  for (const RunColumn& one : runs) columns.push_back(one.column);
+  if (belong_together(alike) && convert_to_one_unit(sheet, table, columns)) runs = std::move(alike);
+}
+
 /// A heading of positions with an approach direction ("X Soll hin"), without the word for the direction; the
 /// direction is 0 for other headings.
 std::pair<int, sheet::Heading> position_of_direction(const sheet::Heading& heading) {
@@ -389,6 +399,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
     }
   }
   take_positions_out(runs, others);
+  if (!others.empty() && !runs.empty()) settle_run_units(sheet, table, runs);
   if (others.empty() || !belong_together(runs)) return 0;
   const std::map<int, std::size_t> positions = positions_by_direction(sheet, table, others);
   number_runs(sheet, table, runs);
