@@ -78,6 +78,52 @@ TEST(SheetRemarks, ATitleWithAnAxisStatesTheDirection) {
                     HasSubstr("the title \"Achse X zurück\" states the approach direction -")));
 }
 
+TEST(SheetRemarks, ATitleStatesTheDirectionOfTheOnlyTable) {
+  const std::string up = "X [mm];dX [um]\n0;1\n50;2\n100;3\n", down = "X [mm];dX [um]\n100;1\n50;2\n0;3\n";
+  for (const char* const title : {"X+", "Hinfahrt", "Achse X +", "Richtung: X+", "+X", "forward"})
+    EXPECT_THAT(
+        read(std::string(title) + "\n" + up),
+        AllOf(StartsWith("X[mm],x[mm],dirX\n0,0.001,1\n"),
+              HasSubstr(std::string("the title \"") + title + "\" states the approach direction + of")));
+  EXPECT_THAT(read("X-\n" + down), StartsWith("X[mm],x[mm],dirX\n100,100.001,-1\n"));
+  EXPECT_THAT(read("Lauf 2, X-\n" + down), StartsWith("X[mm],x[mm],dirX,run\n100,100.001,-1,2\n"));
+  // A way of the survey is the way of the rows; a sign of the axis is used as written, with a note.
+  EXPECT_THAT(read("Hinfahrt\n" + down), StartsWith("X[mm],x[mm],dirX\n100,100.001,-1\n"));
+  EXPECT_THAT(read("X+\n" + down), HasSubstr("contradict the order of the rows"));
+  // Runs without directions of their own.
+  EXPECT_THAT(read("X+\nX [mm];Lauf 1 [um];Lauf 2 [um]\n0;1;2\n50;2;3\n100;3;4\n"),
+              StartsWith("X[mm],run,x[mm],dirX\n0,1,0.001,1\n"));
+  for (const char* const title : {"-", "Pos", "auf", "Messung 3", "Achse X", "Richtung X- und X+"})
+    EXPECT_THAT(read(std::string(title) + "\n" + up),
+                AllOf(StartsWith("X[mm],x[mm]\n"), Not(HasSubstr("note"))))
+        << title;
+  EXPECT_THAT(read("Hinfahrt\nX [mm];dX [um]\n0;1\n50;2\n100;3\n100;4\n50;3\n0;2\n"),
+              AllOf(StartsWith("X[mm],x[mm]\n"), HasSubstr("the rows of the table go in both")));
+}
+
+TEST(SheetRemarks, LinesBetweenTheRowsStateTheDirection) {
+  const std::string rows =
+      "X[mm],x[mm],dirX\n0,0.001,1\n50,50.002,1\n100,100.003,1\n100,100.004,-1\n50,50.003,"
+      "-1\n0,0.002,-1\nnote: the lines \"";
+  for (const auto& [forth, back] : {std::pair("Hinfahrt", "Rückfahrt"), {"X+", "X-"}}) {
+    const std::string one = std::string(forth) + "\n0;1\n50;2\n100;3\n",
+                      two = std::string(back) + "\n100;4\n50;3\n0;2\n";
+    EXPECT_THAT(read("Achse X\nPos [mm];Abw [um]\n" + one + two), StartsWith(rows + forth)) << forth;
+    EXPECT_THAT(read("Achse X\nPos [mm];Abw [um]\n" + one + "\n" + two), StartsWith(rows + forth)) << forth;
+  }
+  EXPECT_THAT(read("X [mm];dX [um]\nLauf 1\n0;1\n50;2\nLauf 2\n0;3\n50;4\n"),
+              StartsWith("X[mm],x[mm],run\n0,0.001,1\n50,50.002,1\n0,0.003,2\n"));
+}
+
+TEST(SheetRemarks, DirectionsAboveTwoTablesSideBySide) {
+  for (const char* const titles : {"X+;;X-;", "Hinfahrt;;Rückfahrt;"})
+    EXPECT_THAT(read("Achse X\n" + std::string(titles) +
+                     "\nPos [mm];Abw [um];Pos [mm];Abw [um]\n0;1;100;4\n50;2;50;3\n100;3;0;2\n"),
+                StartsWith("X[mm],dirX,run,x[mm]\n0,1,1,0.001\n50,1,1,50.002\n100,1,1,100.003\n100,-1,1,"
+                           "100.004\n"))
+        << titles;
+}
+
 TEST(SheetRemarks, AnEmptyPositionIsNotFilledByTheOneAbove) {
   EXPECT_THAT(read("X [mm];dX [um]\n0;1\n50;2\n100;3\n;2\n"),
               AllOf(StartsWith("refused: s.csv:5"), HasSubstr("write the position into this cell"),

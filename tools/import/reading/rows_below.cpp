@@ -19,17 +19,6 @@
 namespace vernier::importer {
 namespace {
 
-/// The first column of positions by its heading.
-std::optional<std::size_t> column_of_positions(const sheet::SheetTable& table) {
-  const SheetWishes usual;
-  const Guess guess(usual);
-  for (std::size_t k = 0; k < table.headings.size(); ++k)
-    if (guess.is_axis(guess.column(table.headings[k]).name) ||
-        Guess::bare(table.headings[k].name) == Guess::Bare::kTarget)
-      return k;
-  return std::nullopt;
-}
-
 bool names_difference(const sheet::Heading& heading) {
   const std::vector<std::string> words = heading_words(text::in_small_letters(heading.name));
   return words.size() == 1 &&

@@ -280,7 +280,9 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   result.sheet = sheet::read_sheet(bytes, file, result.wishes.format);
   const std::set<std::size_t> degrees = convert_degree_cells(result.sheet);
   sheet::keep_table(result.sheet, result.wishes.format.table);
+  const std::vector<RunLine> run_lines = take_run_lines(result.sheet);
   result.table = sheet::parts_of_sheet(result.sheet);
+  add_run_lines(result.sheet, result.table, run_lines);
   state_degrees(result.table, degrees);
   refuse_transposed(result.sheet, result.table);
   leave_words_below(result.sheet, result.table);
@@ -309,8 +311,8 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
         !words.columns.empty() || !words.deviations.empty() || !result.wishes.assignments.empty();
     if (!unfolded_axes) refuse_unread_axes(result.sheet, result.table, result.wishes, assigned);
   }
-  if (result.wishes.format.table && result.runs == 0)
-    add_run_of_title(result.sheet, result.table, result.wishes.constants);
+  add_run_of_title(result.sheet, result.table, result.wishes.constants,
+                   result.wishes.format.table.has_value() && result.runs == 0);
   for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
   for (const std::string& one : words.deviations) assign_deviation(result.wishes, one);
   for (const std::string& heading : words.fill)

@@ -242,6 +242,16 @@ Guess::Bare Guess::bare(const std::string& name) {
   return found;
 }
 
+std::optional<std::size_t> column_of_positions(const sheet::SheetTable& table) {
+  const SheetWishes usual;
+  const Guess guess(usual);
+  for (std::size_t k = 0; k < table.headings.size(); ++k)
+    if (guess.is_axis(guess.column(table.headings[k]).name) ||
+        Guess::bare(table.headings[k].name) == Guess::Bare::kTarget)
+      return k;
+  return std::nullopt;
+}
+
 std::string option_of_positions(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
                                 const Guess& guess, std::size_t deviation) {
   std::optional<std::size_t> nearest;

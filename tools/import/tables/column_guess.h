@@ -102,6 +102,9 @@ class Guess {
   const SheetWishes& wishes_;
 };
 
+/// Returns the first column of positions by its heading; nullopt if no heading names a position.
+std::optional<std::size_t> column_of_positions(const sheet::SheetTable& table);
+
 /// Returns the option that makes a column the positions of the axis X for a deviation whose axis is not
 /// known:
 /// --column "X=Pos 1 [mm]", or --set "X[mm]=0" if no heading has a word for a position. The nearest column to

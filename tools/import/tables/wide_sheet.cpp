@@ -150,7 +150,8 @@ std::optional<RunColumn> run_column(const sheet::Heading& heading) {
       column.measured = said = true;
     } else if (token.text.size() == 1 &&
                std::string_view("XYZABCUVW").find(token.text[0]) != std::string_view::npos &&
-               column.axis.empty() && (k + 1 >= tokens.size() || !tokens[k + 1].glued)) {
+               column.axis.empty() &&
+               (k + 1 >= tokens.size() || !tokens[k + 1].glued || tokens[k + 1].piece == Piece::kSign)) {
       column.axis = token.text;
     } else {
       return std::nullopt;
@@ -307,19 +308,22 @@ void settle_run_units(sheet::Sheet& sheet, sheet::SheetTable& table, std::vector
   if (belong_together(alike) && convert_to_one_unit(sheet, table, columns)) runs = std::move(alike);
 }
 
-/// A heading of positions with an approach direction ("X Soll hin"), without the word for the direction; the
-/// direction is 0 for other headings.
+/// A heading of positions with an approach direction ("X Soll hin", "X+ Pos"), without the word for the
+/// direction; the direction is 0 for other headings.
 std::pair<int, sheet::Heading> position_of_direction(const sheet::Heading& heading) {
   int sense = 0;
   bool target = false;
   std::string name;
-  for (const std::string& word : heading_words(heading.name)) {
-    const std::string small = text::in_small_letters(word);
-    if (says_way(small)) {
+  // "X+" is one word here.
+  for (const std::string& written : text::words_in(heading.name, " \t_./:;,()[]#")) {
+    const std::string small = text::in_small_letters(written);
+    const bool of_axis = is_axis_direction(written);
+    if (says_way(small) || of_axis) {
       if (sense != 0) return {0, heading};
       sense = sense_said(small);
-      continue;
+      if (!of_axis) continue;
     }
+    const std::string word = of_axis ? written.substr(0, 1) : written;
     target |= says_target(small) ||
               (word.size() == 1 && std::string_view("XYZABCUVW").find(word[0]) != std::string_view::npos);
     name += (name.empty() ? "" : " ") + word;
@@ -389,8 +393,10 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   std::vector<std::size_t> others;
   for (std::size_t k = 0; k < table.headings.size(); ++k) {
     auto one = run_column(table.headings[k]);
-    // "Pos" at the left is where the machine was sent.
-    if (one && one->pos && one->run.empty() && k == 0) one.reset();
+    // "Pos" at the left, or beside a direction, is where the machine was sent.
+    if (one && one->pos && one->run.empty() &&
+        (k == 0 || position_of_direction(table.headings[k]).first != 0))
+      one.reset();
     if (one) {
       one->column = k;
       runs.push_back(std::move(*one));

@@ -90,8 +90,10 @@ const WordSet kBackWords = {"-1",
 const WordSet kRunWords = {"lauf",        "run",   "messlauf", "messreihe", "messung",
                            "durchgang",   "pass",  "passage",  "zyklus",    "cycle",
                            "measurement", "fahrt", "serie",    "series",    "reihe"};
-const WordSet kWayWords = {"hin",   "her",     "zurück", "zur",   "zurueck", "vor",      "rück",
-                           "rueck", "forward", "fwd",    "forth", "back",    "backward", "bwd"};
+const WordSet kWayWords = {"hin",        "her",       "zurück",   "zur",       "zurueck", "vor",
+                           "rück",       "rueck",     "forward",  "fwd",       "forth",   "back",
+                           "backward",   "backwards", "bwd",      "hinfahrt",  "hinweg",  "rückfahrt",
+                           "rueckfahrt", "rückweg",   "vorwärts", "rückwärts", "aller",   "retour"};
 
 }  // namespace
 
@@ -153,12 +155,14 @@ bool is_missing(const std::string& cell) {
   return kMarks.contains(text::in_small_letters(cell));
 }
 
+bool is_axis_direction(std::string_view word) {
+  return word.size() == 2 && std::string_view("xyzabcuvwXYZABCUVW").find(word[0]) != std::string_view::npos &&
+         (word[1] == '+' || word[1] == '-');
+}
+
 int sense_said(std::string_view word) {
   std::string small = text::in_small_letters(word);
-  // "X+" is the direction + of the axis X.
-  if (small.size() == 2 && std::string_view("xyzabcuvw").find(small[0]) != std::string_view::npos &&
-      (small[1] == '+' || small[1] == '-'))
-    small.erase(0, 1);
+  if (is_axis_direction(small)) small.erase(0, 1);
   return kForthWords.contains(small) ? 1 : kBackWords.contains(small) ? -1 : 0;
 }
 

@@ -52,6 +52,9 @@ bool says_counting(const std::string& word);
 /// True for a cell without a value: empty, "-", "n/a" …
 bool is_missing(const std::string& cell);
 
+/// True for the direction of an axis: "X+" is the direction + of the axis X.
+bool is_axis_direction(std::string_view word);
+
 /// Returns the approach direction that a word states: 1 for forward, +, hin …; -1 for back, -, zurück …; 0
 /// for other words.
 int sense_said(std::string_view word);
