@@ -90,6 +90,40 @@ TEST(TypedCells, NotesSingleCellsInAnotherUnit) {
               Not(HasSubstr("note")));
 }
 
+/// A survey of two runs in both directions, with a lead error, a reversal error and a scatter of 0.5 um.
+std::string survey(const std::string& in_place_of = "", const std::string& typed = "") {
+  std::string rows =
+      "X [mm];1+ [um];1- [um];2+ [um];2- [um]\n"
+      "0;-0,4;3,1;0,3;2,7\n50;-1,9;1,2;-1,2;1,6\n100;-2,6;0,1;-3,3;0,7\n150;-4,8;-1,6;-4,1;-0,8\n"
+      "200;-5,5;-2,9;-6,2;-2,2\n250;-7,7;-4,1;-7,2;-4,6\n300;-8,6;-5,8;-9,3;-5,1\n350;-10,9;-6,8;-10,2;-7,4\n"
+      "400;-11,7;-8,9;-12,4;-8,3\n";
+  const auto at = in_place_of.empty() ? std::string::npos : rows.find(in_place_of);
+  return at == std::string::npos ? rows : rows.replace(at, in_place_of.size(), typed);
+}
+
+TEST(TypedCells, NotesALostMinusSign) {
+  EXPECT_THAT(read(survey()), Not(HasSubstr("note")));
+  EXPECT_THAT(
+      read(survey("-7,7", "7,7")),
+      HasSubstr("note: line 7, \"7,7\": the negative value agrees with the other readings of \"1+ [um] to "
+                "2- [um]\", and this value does not: is a minus sign lost?"));
+  // One run without directions: by the readings beside it.
+  std::string one = "X [mm];dX [um]\n";
+  for (const char* const row : {"0;-3,1", "50;-3,6", "100;-4,4", "150;-4,7", "200;5,6", "250;-6,1",
+                                "300;-6,4", "350;-7,3", "400;-7,6", "450;-8,4"})
+    one += std::string(row) + "\n";
+  EXPECT_THAT(read(one), HasSubstr("note: line 6, \"5,6\": "));
+  // A change of the sign by less than the scatter cannot be seen.
+  EXPECT_THAT(read(survey("-0,4", "0,4")), Not(HasSubstr("note")));
+}
+
+TEST(TypedCells, NotesACellInMillimetresByItsValueOrItsDecimals) {
+  EXPECT_THAT(read(survey("-11,7", "-0,0117")), HasSubstr("note: line 10, \"-0,0117\": this cell of"));
+  EXPECT_THAT(read(survey("-1,6", "-0,0016")), HasSubstr("note: line 5, \"-0,0016\": this cell of"));
+  EXPECT_THAT(read(survey("-10,9", "-0,01")),
+              HasSubstr("note: line 9, \"-0,01\": 1000 times this value agrees"));
+}
+
 TEST(TypedCells, NotesARunOfTenTimesTheSize) {
   EXPECT_THAT(
       read("X [mm];Lauf 1 [um];Lauf 2 [um]\n0;-0,7;-3\n50;1,8;22\n100;1,3;17\n150;3,8;42\n200;3,3;37\n"),

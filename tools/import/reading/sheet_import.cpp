@@ -17,6 +17,7 @@
 #include "tools/import/reading/title_positions.h"
 #include "tools/import/reading/verdict_columns.h"
 #include "tools/import/sizes/deviation_sizes.h"
+#include "tools/import/sizes/mistyped_cells.h"
 #include "tools/import/sizes/outlying_cells.h"
 #include "tools/import/sizes/position_sizes.h"
 #include "tools/import/sizes/row_shift.h"
@@ -230,6 +231,7 @@ void judge_sizes(SheetReading& reading) {
   }
   if (!doubts.empty()) return;
   note_outlying_cells(reading.sheet, reading.table, sized);
+  note_mistyped_cells(reading.sheet, reading.table, sized);
   note_other_scales(reading.sheet, reading.table, sized);
 }
 

@@ -38,10 +38,6 @@ constexpr double kSmoother = 0.1;
 constexpr double kSmootherWithZero = 0.5;
 constexpr std::size_t kFewestChanges = 4;  // between cells with and without a sign
 
-constexpr std::size_t kMoreDecimals = 2;  // one more is a digit of the same instrument
-constexpr std::size_t kMostFewCells = 2;  // judge_mixed_units() tests three cells and more
-constexpr double kOtherUnit = 1000;       // um in a mm
-
 /// Ratio of two runs, from 10 or 100: the scatter of five readings is below a fifth of their size.
 constexpr double kRatioSpread = 1.25;
 constexpr double kResidualShare = 0.25;   // of the readings; unrelated runs have 1
@@ -277,33 +273,6 @@ void note_run_of_other_scale(sheet::Sheet& sheet, const sheet::SheetTable& table
     }
 }
 
-void note_few_cells_of_other_unit(sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t k) {
-  const std::vector<TypedCell> cells = typed_cells_of(sheet, table, k);
-  std::map<std::size_t, std::size_t> count;
-  for (const TypedCell& one : cells) ++count[one.decimals];
-  if (count.size() < 2 || cells.size() < 2 * kFewestTyped) return;
-  const std::size_t most = count.rbegin()->first, fewer = std::next(count.rbegin())->first;
-  // Numbers with as many digits as they need have more decimals near zero. A zero at the end may be cut off.
-  if (count.size() - count.count(0) > 2) return;
-  if (count.rbegin()->second > kMostFewCells || most < fewer + kMoreDecimals) return;
-  std::vector<double> sizes;
-  for (const TypedCell& one : cells)
-    if (one.decimals != most && one.value != 0) sizes.push_back(std::abs(one.value));
-  if (sizes.size() < kFewestTyped) return;
-  const double least = *std::min_element(sizes.begin(), sizes.end()),
-               largest = *std::max_element(sizes.begin(), sizes.end()), usual = maths::median(sizes);
-  for (const TypedCell& one : cells) {
-    const double size = std::abs(one.value), other = kOtherUnit * size;
-    if (one.decimals != most || size >= least || other < usual / kLongStep || other > largest) continue;
-    sheet.notes.push_back(fmt::format(
-        "line {}, \"{}\": this cell of \"{}\" has more decimals than the other ones, and 1000 times its "
-        "value "
-        "agrees with them: has the cell another unit? The value is read; if it is wrong, correct the cell or "
-        "write - into it",
-        sheet.line[one.row], sheet.rows[one.row][k], table.headings[k].text));
-  }
-}
-
 /// Does a cell begin with 0 and another digit ("-07")?
 bool begins_with_zero(const std::string& cell) {
   const auto first = cell.find_first_of("0123456789");
@@ -400,7 +369,6 @@ void note_other_scales(sheet::Sheet& sheet, const sheet::SheetTable& table,
                        const std::vector<SizedColumn>& columns) {
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (columns[k].use != SizedColumn::Use::kDeviation || !sized_unit(columns[k])) continue;
-    note_few_cells_of_other_unit(sheet, table, k);
     note_run_of_other_scale(sheet, table, columns, k);
   }
 }

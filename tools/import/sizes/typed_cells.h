@@ -33,9 +33,7 @@ std::vector<SizeDoubt> judge_targets(sheet::Sheet& sheet, const sheet::SheetTabl
 std::vector<SizeDoubt> judge_lost_signs(sheet::Sheet& sheet, const sheet::SheetTable& table,
                                         const std::vector<SizedColumn>& columns);
 
-/// Notes one or two cells with more decimals than all other cells of a column of deviations, if 1000 times
-/// their value agrees with the cells beside them (0.0058 among 5.3 and 3.3), and runs whose deviations are 10
-/// or 100 times those of the other runs at the same targets.
+/// Notes runs whose deviations are 10 or 100 times those of the other runs at the same targets.
 void note_other_scales(sheet::Sheet& sheet, const sheet::SheetTable& table,
                        const std::vector<SizedColumn>& columns);
 
