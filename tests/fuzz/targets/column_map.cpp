@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/column_map.h"
+#include "tools/import/columns/column_map.h"
 
 #include "tests/fuzz/target.h"
 #include "tools/format/csv_file.h"

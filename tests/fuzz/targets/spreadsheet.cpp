@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/fuzz/target.h"
 #include "tools/format/csv_file.h"
-#include "tools/import/tables/sheet_columns.h"
+#include "tools/import/columns/sheet_columns.h"
 #include "tools/import/tables/sheet_table.h"
 #include "tools/import/tables/wide_sheet.h"
 

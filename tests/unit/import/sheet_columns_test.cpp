@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Spreadsheets as people send them: each is read rightly, or refused with the mend.
-#include "tools/import/tables/sheet_columns.h"
+#include "tools/import/columns/sheet_columns.h"
 
 #include <gtest/gtest.h>
 

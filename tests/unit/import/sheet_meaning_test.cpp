@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "tests/unit/import/table_reading.h"
+#include "tools/import/columns/doubled.h"
 #include "tools/import/reading/sheet_import.h"
 #include "tools/import/tables/directions.h"
-#include "tools/import/tables/doubled.h"
 #include "tools/import/tables/thousands.h"
 #include "tools/sheet/workbook_writer.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/import/tables/column_map.h"
+#include "tools/import/columns/column_map.h"
 #include "tools/model/machine.h"
 
 namespace vernier::commands::import_cli {

@@ -7,9 +7,9 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
+#include "tools/import/columns/column_guess.h"
+#include "tools/import/columns/delimited.h"
 #include "tools/import/reading/sheet_import.h"
-#include "tools/import/tables/column_guess.h"
-#include "tools/import/tables/delimited.h"
 #include "tools/import/tables/survey.h"
 #include "tools/import/words/joint_names.h"
 #include "tools/model/machine_reader.h"

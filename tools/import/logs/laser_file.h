@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "tools/import/tables/column_map.h"
+#include "tools/import/columns/column_map.h"
 
 namespace vernier::importer {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/import/columns/column_map.h"
 #include "tools/import/logs/pairing.h"
-#include "tools/import/tables/column_map.h"
 #include "tools/model/machine.h"
 
 namespace vernier::importer {

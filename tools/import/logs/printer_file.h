@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/import/tables/column_map.h"
+#include "tools/import/columns/column_map.h"
 
 namespace vernier::importer {
 

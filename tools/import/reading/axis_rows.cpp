@@ -11,7 +11,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
-#include "tools/import/tables/column_guess.h"
+#include "tools/import/columns/column_guess.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/unit_factor.h"
 #include "tools/text/error.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-#include "tools/import/tables/sheet_wishes.h"
+#include "tools/import/columns/sheet_wishes.h"
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/import/tables/column_guess.h"
+#include "tools/import/columns/column_guess.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"

@@ -8,6 +8,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/columns/column_guess.h"
 #include "tools/import/reading/axis_rows.h"
 #include "tools/import/reading/degree_cells.h"
 #include "tools/import/reading/invalid_rows.h"
@@ -22,7 +23,6 @@
 #include "tools/import/sizes/position_sizes.h"
 #include "tools/import/sizes/row_shift.h"
 #include "tools/import/sizes/typed_cells.h"
-#include "tools/import/tables/column_guess.h"
 #include "tools/import/tables/computed_rows.h"
 #include "tools/import/tables/directions.h"
 #include "tools/import/tables/table_shape.h"

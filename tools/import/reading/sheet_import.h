@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/import/tables/sheet_columns.h"
+#include "tools/import/columns/sheet_columns.h"
 #include "tools/import/tables/sheet_table.h"
 
 namespace vernier::importer {

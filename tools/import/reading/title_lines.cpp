@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "tools/format/columns.h"
+#include "tools/import/columns/column_guess.h"
 #include "tools/import/reading/title_positions.h"
-#include "tools/import/tables/column_guess.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/import/tables/sheet_wishes.h"
+#include "tools/import/columns/sheet_wishes.h"
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet.h"
 

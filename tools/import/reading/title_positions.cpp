@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "tools/format/units.h"
-#include "tools/import/tables/column_guess.h"
-#include "tools/import/tables/sheet_columns.h"
+#include "tools/import/columns/column_guess.h"
+#include "tools/import/columns/sheet_columns.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
@@ -231,7 +231,7 @@ class TitleReader {
   }
 
   std::optional<TitlePosition> position_at(std::size_t letter) {
-    constexpr std::size_t kMostBetween = 6;
+    constexpr std::size_t kMostBetween = 6;  // words and signs between the axis and the number
     const bool begins = begins_position(letter);
     bool equals = false, colon = false,
          place = letter > 0 && is_word(letter - 1) && says_place(small_[letter - 1]);

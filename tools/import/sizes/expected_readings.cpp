@@ -108,9 +108,8 @@ ExpectedList by_neighbours(const std::vector<PlacedReading>& readings) {
       const double span = other.position - one.position;
       if (span == 0) continue;
       const double share = (at.position - one.position) / span;
-      // Between the two readings, or at an end as far outside as their distance.
       const bool inside = k > 0 && k < last;
-      constexpr double kFarthest = 1.5;
+      constexpr double kFarthest = 1.5;  // distances of the two readings: a line further out is no prediction
       if (inside ? share <= 0 || share >= 1 : std::abs(share) > kFarthest) continue;
       result[sequence[k]] = ExpectedReading{one.value + share * (other.value - one.value),
                                             std::sqrt(1 + (1 - share) * (1 - share) + share * share)};

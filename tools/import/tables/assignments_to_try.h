@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/import/tables/column_guess.h"
+#include "tools/import/columns/column_guess.h"
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet.h"
 

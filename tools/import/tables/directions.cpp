@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "tools/format/columns.h"
+#include "tools/import/columns/column_guess.h"
 #include "tools/import/order/row_order.h"
-#include "tools/import/tables/column_guess.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/sheet.h"
 #include "tools/text/words.h"

@@ -10,10 +10,10 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/columns/column_guess.h"
+#include "tools/import/columns/column_values.h"
+#include "tools/import/columns/sheet_columns.h"
 #include "tools/import/tables/assignments_to_try.h"
-#include "tools/import/tables/column_guess.h"
-#include "tools/import/tables/column_values.h"
-#include "tools/import/tables/sheet_columns.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "tools/import/tables/column_map.h"
+#include "tools/import/columns/column_map.h"
 
 namespace vernier::importer {
 

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "tools/format/units.h"
-#include "tools/import/tables/column_guess.h"
+#include "tools/import/columns/column_guess.h"
 #include "tools/import/tables/computed_rows.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/sheet_number.h"

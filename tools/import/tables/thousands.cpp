@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "tools/format/units.h"
-#include "tools/import/tables/column_guess.h"
+#include "tools/import/columns/column_guess.h"
 #include "tools/maths/median.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "tools/import/tables/sheet_wishes.h"
+#include "tools/import/columns/sheet_wishes.h"
 
 namespace vernier::importer {
 

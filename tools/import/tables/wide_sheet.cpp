@@ -14,7 +14,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
-#include "tools/import/tables/column_guess.h"
+#include "tools/import/columns/column_guess.h"
 #include "tools/import/tables/run_units.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"

@@ -118,7 +118,7 @@ bool names_statistic(const sheet::Heading& heading) {
 }
 bool says_run(const std::string& word) { return kRunWords.contains(word); }
 bool is_run_number(std::string_view word) {
-  constexpr std::size_t kMostDigits = 3;
+  constexpr std::size_t kMostDigits = 3;  // more are a date or a number of a machine
   return !word.empty() && word.size() <= kMostDigits &&
          word.find_first_not_of("0123456789") == std::string_view::npos;
 }

@@ -7,7 +7,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/csv_file.h"
-#include "tools/import/tables/sheet_wishes.h"
+#include "tools/import/columns/sheet_wishes.h"
 #include "tools/sheet/heading.h"
 
 namespace vernier::importer {
@@ -25,6 +25,8 @@ bool is_pure(const std::string& name);
 bool is_angle(const std::string& unit);
 /// True if the column must have a unit.
 bool wants_unit(const SheetColumn& column);
+/// Leaves a column out of the measurement file. `why`: the reason, for the user.
+void leave_column(SheetColumn& column, const std::string& why);
 /// Returns the name of the reading that belongs to an axis: x, y, z for X, Y, Z (along the axis); rx, ry, rz
 /// for A, B, C (about the axis); nullopt for other axes.
 std::optional<std::string> reading_of(const std::string& axis);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/delimited.h"
+#include "tools/import/columns/delimited.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/column_values.h"
+#include "tools/import/columns/column_values.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
-#include "tools/import/tables/column_guess.h"
+#include "tools/import/columns/column_guess.h"
 #include "tools/maths/median.h"
 #include "tools/sheet/sheet.h"
 

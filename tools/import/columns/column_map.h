@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/import/tables/delimited.h"
+#include "tools/import/columns/delimited.h"
 #include "tools/text/error.h"
 
 namespace vernier::importer {

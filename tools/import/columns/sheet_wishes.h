@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/import/columns/column_map.h"
 #include "tools/import/sizes/deviation_sizes.h"
-#include "tools/import/tables/column_map.h"
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/sheet_wishes.h"
+#include "tools/import/columns/sheet_wishes.h"
 
 #include <fmt/format.h>
 

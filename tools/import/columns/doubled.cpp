@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/doubled.h"
+#include "tools/import/columns/doubled.h"
 
 #include <fmt/format.h>
 

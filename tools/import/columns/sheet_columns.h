@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/import/tables/sheet_wishes.h"
+#include "tools/import/columns/sheet_wishes.h"
 
 namespace vernier::importer {
 

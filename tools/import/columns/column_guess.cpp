@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/column_guess.h"
+#include "tools/import/columns/column_guess.h"
 
 #include <fmt/format.h>
 
@@ -108,6 +108,11 @@ bool is_angle(const std::string& unit) {
 bool wants_unit(const SheetColumn& column) {
   return column.use != SheetColumn::Use::kLeft && !column.words && !is_label(column.name) &&
          !is_pure(column.name);
+}
+
+void leave_column(SheetColumn& column, const std::string& why) {
+  column.use = SheetColumn::Use::kLeft;
+  column.why = why;
 }
 
 std::optional<std::string> reading_of(const std::string& axis) {

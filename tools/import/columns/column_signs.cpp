@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/import/columns/column_signs.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "tools/import/columns/column_guess.h"
+#include "tools/import/words/sign_words.h"
+#include "tools/sheet/sheet_number.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
+
+namespace vernier::importer {
+namespace {
+
+/// A text about the sign of deviations, and what it states.
+struct SignText {
+  SignSaid said = SignSaid::kNothing;
+  std::size_t line = 0;
+  std::string text;
+
+  void add(SignSaid sign, std::size_t at, const std::string& words) {
+    const SignSaid both = both_signs(said, sign);
+    if (both != said) *this = {both, at, words};
+  }
+};
+
+/// The cell with a blank behind it if it is only a label ("Vorzeichen:") of the next cell; empty otherwise.
+std::string label_of_sign(const std::string& cell) {
+  const std::vector<std::string> words = text::words_in(text::in_small_letters(cell), " \t:");
+  const bool alone = words.size() == 1 && (words[0].starts_with("vorzeichen") || words[0] == "sign");
+  return alone ? cell + " " : "";
+}
+
+/// The sign that the file states outside the headings: in titles, remarks, and cells of words in the rows.
+SignText sign_of_texts(const sheet::Sheet& sheet, const sheet::SheetTable& table, Travel travel) {
+  SignText found;
+  const auto look = [&](const std::string& text, std::size_t line) {
+    found.add(sign_said(text, SignPlace::kTitle, travel), line, text);
+  };
+  for (const sheet::Remark& remark : sheet.remarks) look(remark.text, remark.line);
+  const std::size_t headings = table.upper_row ? *table.upper_row : table.heading_row;
+  for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
+    if (table.has_headings && row >= headings && row < table.first_data) continue;
+    std::string label;
+    for (const std::string& cell : sheet.rows[row]) {
+      if (cell.size() <= 4 || sheet::plain_number(cell, sheet.decimal_comma)) continue;
+      look(label + cell, sheet.line[row]);
+      label = label_of_sign(cell);
+    }
+  }
+  // A cover sheet is about all sheets of the workbook; another table states its own sign.
+  std::string label;
+  for (const sheet::TextElsewhere& other : sheet.elsewhere) {
+    if (other.table) continue;
+    found.add(sign_said(label + other.text, SignPlace::kTitle, travel), 0,
+              fmt::format("sheet {}: {}", other.sheet, label + other.text));
+    label = label_of_sign(other.text);
+  }
+  return found;
+}
+
+/// The side of zero of the positions of the axis of a deviation: of its targets, or else of its readings.
+Travel travel_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                 const std::vector<SheetColumn>& columns, const SheetColumn& deviation,
+                 const std::vector<MappedColumn>& constants) {
+  bool above = false, below = false;
+  const auto count = [&](std::optional<double> value) {
+    above |= value && *value > 0;
+    below |= value && *value < 0;
+  };
+  const std::string positions = deviation.to_target ? *reading_of(deviation.name) : deviation.name;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k].use != SheetColumn::Use::kColumn || columns[k].name != positions) continue;
+    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+      if (const auto number = sheet::plain_number(sheet.rows[row][k], sheet.decimal_comma))
+        count(text::parse_number(*number));
+  }
+  for (const MappedColumn& constant : constants)
+    if (constant.name == positions) count(text::parse_number(constant.constant));
+  if (above && below) return Travel::kBothSides;
+  return below ? Travel::kNegative : Travel::kPositive;
+}
+
+}  // namespace
+
+void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                  std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
+  std::map<Travel, SignText> of_travel;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kDeviation) continue;
+    if (wishes.turned) {
+      column.turned = *wishes.turned;
+      continue;
+    }
+    const Travel travel = travel_of(sheet, table, columns, column, wishes.constants);
+    if (!of_travel.contains(travel)) of_travel[travel] = sign_of_texts(sheet, table, travel);
+    const SignText& texts = of_travel[travel];
+    const sheet::Heading& heading = table.headings[k];
+    SignText sign;
+    sign.add(sign_said(heading.text, SignPlace::kHeading, travel), sheet.line[table.heading_row],
+             heading.text);
+    if (sign.said == SignSaid::kNothing && names_correction(heading))
+      sign.said = SignSaid::kNominalLessActual;  // the titles are about deviations
+    else
+      sign.add(texts.said, texts.line, texts.text);
+    if (sign.said != SignSaid::kNothing && sign.text == texts.text) column.sign_from = texts.text;
+    column.turned = sign.said == SignSaid::kNominalLessActual;
+    if (sign.said != SignSaid::kUnclear) continue;
+    column.sign_place = {sheet.file, sign.line};
+    column.sign_text = sign.text;
+  }
+}
+
+}  // namespace vernier::importer
