@@ -369,7 +369,8 @@ class Writer {
   void write_limits(const Instruction& s, const Instruction& next, std::uint16_t result,
                     bool after_sum) noexcept {
     // The step before writes one result if it is a sum: the register before this result.
-    add_head(after_sum && s.a + 1 == result ? run_limits<true> : run_limits<false>, {result, s.a, s.b, 0});
+    const bool of_sum = after_sum && s.a + 1 == result;
+    add_head(of_sum ? run_limits<true> : run_limits<false>, {result, s.a, s.b, 0});
     add_start(e_.constants[s.b]);
     add_start(e_.constants[next.b]);
   }

@@ -88,6 +88,21 @@ TEST(OperatorRecords, NewerOfTwoCountsAlsoWhereTheSequenceBeginsAnew) {
   EXPECT_EQ(load(4, 4).places(), State::kDamaged);
 }
 
+// A state that only one place has is lost with this place.
+TEST(OperatorRecords, StateIsStoredOnceUntilBothPlacesHaveIt) {
+  Store store;
+  OperatorRecords records = store.load();
+  for (int i = 0; i < 3; ++i) {
+    const OperatorChange change = records.change_to(out_of_use());
+    store.put(change), records.stored(change);
+    EXPECT_EQ(store.load().once(), i == 0) << i;
+  }
+  const OperatorChange change = records.change_to({});
+  store.put(change);
+  ASSERT_EQ(store.load().places(), State::kIntact);
+  EXPECT_TRUE(store.load().once()) << "the other place has the state before";
+}
+
 TEST(OperatorRecords, OneDamagedPlaceLeavesTheOther) {
   OperatorRecord damaged = record_of(5);
   damaged.checksum ^= 1;

@@ -165,6 +165,21 @@ TEST(Slots, LostNewestRecordIsADamage) {
   }
 }
 
+// The first record after the loss of both has no record before it in the other place.
+TEST(Slots, LostPairIsIntactAfterTwoChanges) {
+  Places places;
+  places.place[0].written = places.place[1].written = true;
+  Slots slots = places.load();
+  ASSERT_EQ(slots.places(), StoredPair::kDamaged);
+  ASSERT_EQ(slots.confirmed(), kNoSlot);
+  for (const StoredPair expected : {StoredPair::kDamaged, StoredPair::kIntact}) {
+    const SlotChange change = slots.start_trial(5, 0);
+    places.put(change), slots.stored(change);
+    EXPECT_EQ(slots.places(), expected);
+    EXPECT_EQ(places.load().places(), expected);
+  }
+}
+
 // The sequence has 32 bits: its first number follows its last one.
 TEST(Slots, RecordWithTheFirstSequenceIsNewerThanTheOneWithTheLast) {
   const auto record_of = [](std::uint32_t sequence, std::uint8_t confirmed) {
