@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/commands/survey.h"
 
+#include <utility>
+
 #include "tools/commands/command.h"
-#include "tools/effects/probe_offset.h"
 #include "tools/effects/roles.h"
-#include "tools/model/file_set_ups.h"
+#include "tools/effects/survey.h"
 #include "tools/model/machine_reader.h"
+#include "tools/model/rebind.h"
 #include "tools/simulate/corrected.h"
 #include "tools/text/files.h"
 
@@ -28,34 +30,45 @@ void add_survey(CLI::App& command, SurveyArguments& arguments) {
 
 Survey read_survey(const SurveyArguments& arguments,
                    const std::function<model::Machine(model::Machine)>& prepare) {
-  Survey survey;
-  survey.text = text::read_file(arguments.machine);
-  const auto read = [&] {
-    survey.machine = model::parse_machine(survey.text, arguments.machine);
-    if (prepare) survey.machine = prepare(std::move(survey.machine));
-    survey.rows = model::read_measurement(arguments.measurements, survey.machine,
-                                          simulate::corrections_of_images(arguments.images));
-  };
-  read();
-  std::vector<std::string> notes;
-  for (const auto complete :
-       {effects::with_probe_offset, model::with_set_ups_of_files, model::with_camera_mountings}) {
-    model::CompletedText own = complete(survey.text, survey.machine, survey.rows);
-    if (own.notes.empty()) continue;
-    survey.text = std::move(own.text);
-    notes.insert(notes.end(), own.notes.begin(), own.notes.end());
-    read();
-  }
+  const model::ImageCorrection images = simulate::corrections_of_images(arguments.images);
+  effects::CompletedSurvey complete = effects::complete_survey(
+      text::read_file(arguments.machine), arguments.machine, arguments.measurements, images, prepare);
+  Survey survey{std::move(complete.text), std::move(complete.machine), std::move(complete.rows)};
   if (!arguments.columns.empty()) {
     std::vector<effects::ColumnRole> roles;
     for (const std::string& statement : arguments.columns)
       roles.push_back(effects::parse_column_role(statement));
     survey.text = effects::with_declared_columns(survey.text, survey.machine, survey.rows, roles);
-    read();
+    survey.machine = model::parse_machine(survey.text, arguments.machine);
+    if (prepare) survey.machine = prepare(std::move(survey.machine));
+    survey.rows = model::read_measurement(arguments.measurements, survey.machine, images);
     effects::leave_out(survey.rows, roles);
   }
-  survey.machine.notes.insert(survey.machine.notes.end(), notes.begin(), notes.end());
+  survey.machine.notes.insert(survey.machine.notes.end(), complete.notes.begin(), complete.notes.end());
   return survey;
+}
+
+std::vector<fit::FileNoise> estimate_noise(Survey& survey) {
+  std::vector<fit::FileNoise> list = fit::estimate_file_noise(survey.machine, survey.rows);
+  for (const fit::FileNoise& noise : list) survey.machine.notes.push_back(noise.sentence());
+  return list;
+}
+
+bool estimate_noise_again(const std::string& text, const model::Machine& machine, model::Measurement& rows,
+                          std::vector<fit::FileNoise>& noise) {
+  if (noise.empty()) return false;
+  const model::Machine other = model::parse_machine(text, machine.file);
+  model::Measurement bound = model::rebind(rows, machine, other);
+  if (!fit::estimate_file_noise_again(other, bound, noise)) return false;
+  rows.uncertainty = bound.uncertainty;
+  rows.angle_uncertainty = bound.angle_uncertainty;
+  return true;
+}
+
+std::vector<std::string> noise_sentences(const std::vector<fit::FileNoise>& noise) {
+  std::vector<std::string> list;
+  for (const fit::FileNoise& one : noise) list.push_back(one.sentence() + ".");
+  return list;
 }
 
 }  // namespace vernier::commands

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/fit/file_noise.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
@@ -20,7 +21,7 @@ struct SurveyArguments {
 void add_survey(CLI::App& command, SurveyArguments& arguments);
 
 /// A survey that was read from its files. Columns with a stated role are inputs of the machine, and each file
-/// has its own set-up (model::with_set_ups_of_files, with notes in machine.notes).
+/// has its own set-up (effects::complete_survey, with notes in machine.notes).
 struct Survey {
   std::string text;
   model::Machine machine;
@@ -30,5 +31,17 @@ struct Survey {
 /// InputError if a file is not valid.
 Survey read_survey(const SurveyArguments& arguments,
                    const std::function<model::Machine(model::Machine)>& prepare = {});
+
+/// Estimates u of the readings without u if other readings have u (fit::estimate_file_noise), with a note in
+/// machine.notes for each estimate.
+std::vector<fit::FileNoise> estimate_noise(Survey& survey);
+
+/// Estimates u of the readings without u again, with the machine of `text` (a machine with more effects).
+/// `machine`: the machine of `rows`. Returns true if `rows` and `noise` have other values now.
+bool estimate_noise_again(const std::string& text, const model::Machine& machine, model::Measurement& rows,
+                          std::vector<fit::FileNoise>& noise);
+
+/// Sentences about the estimates of u, for an explanation.
+std::vector<std::string> noise_sentences(const std::vector<fit::FileNoise>& noise);
 
 }  // namespace vernier::commands

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/lint/lint.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "tools/format/columns.h"
 #include "tools/lint/machine_lint.h"
 #include "tools/lint/measurement_lint.h"
 #include "tools/sheet/encoding.h"
@@ -35,6 +38,33 @@ const char* linted_kind_name(LintedKind kind) {
   return "";
 }
 
+namespace {
+
+/// Warns about measurement files without u beside files with u: the fit must estimate their weight.
+void compare_uncertainties(std::vector<LintedFile>& files) {
+  const auto lacks_u = [](const LintFinding& finding) {
+    return finding.weight == LintWeight::kRemark && finding.word == format::columns::kUncertainty;
+  };
+  const auto has_u = [&](const LintedFile& file) {
+    return file.kind == LintedKind::kMeasurement && file.usable &&
+           std::none_of(file.findings.begin(), file.findings.end(), lacks_u);
+  };
+  const auto with = std::find_if(files.begin(), files.end(), has_u);
+  if (with == files.end()) return;
+  for (LintedFile& file : files)
+    for (LintFinding& finding : file.findings) {
+      if (!lacks_u(finding)) continue;
+      finding.weight = LintWeight::kWarning;
+      finding.what = fmt::format(
+          "no standard uncertainty u in the file, and {} has one: fit, diagnose and improve estimate u from "
+          "the repeats or the residual of this file",
+          text::printable(with->file));
+      finding.meaning = "state the standard uncertainty of the instrument in a column u[um]";
+    }
+}
+
+}  // namespace
+
 std::vector<LintedFile> lint_files(const std::vector<std::string>& paths) {
   std::vector<LintedFile> list;
   std::vector<std::string> bytes;
@@ -55,6 +85,7 @@ std::vector<LintedFile> lint_files(const std::vector<std::string>& paths) {
       return finding.weight == LintWeight::kError;
     });
   }
+  if (!machine || !machine->instrument) compare_uncertainties(list);
   return list;
 }
 

@@ -11,6 +11,7 @@
 #include "tools/diagnose/diagnosis.h"
 #include "tools/effects/roles.h"
 #include "tools/fit/coverage/domain.h"
+#include "tools/fit/file_noise.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/format/columns.h"
@@ -42,6 +43,7 @@ ResultOfPython fit_of_python(const MachineOfPython& machine, const MeasurementsO
   ResultOfPython result;
   const auto m =
       std::make_shared<model::Measurement>(model::read_measurement(measurements.paths, machine.machine));
+  fit::estimate_file_noise(machine.machine, *m);
   const fit::FitResult found = fit::fit(machine.machine, *m, {});
   if (!found.absurd.empty()) throw text::LimitNotMet(found.absurd);
   result.json = results::fit_json(found, *m);
@@ -58,6 +60,7 @@ ResultOfPython compare_of_python(const MachineOfPython& machine, const Measureme
   const auto m =
       std::make_shared<model::Measurement>(model::read_measurement(measurements.paths, machine.machine));
   result.residual = fit::residuals(machine.machine, *m);
+  fit::file_noise_of_residual(*m, result.residual);
   result.json = results::compare_json(machine.machine, *m, result.residual);
   results::add_failure(result.json, residual::failure_picture(machine.machine, *m, result.residual));
   result.machine = std::make_shared<MachineOfPython>(machine);
@@ -69,12 +72,14 @@ ResultOfPython diagnose_of_python(const MachineOfPython& machine, const Measurem
                                   std::size_t most) {
   ResultOfPython result;
   model::Measurement m = model::read_measurement(measurements.paths, machine.machine);
+  const std::vector<fit::FileNoise> noise = fit::estimate_file_noise(machine.machine, m);
   const std::vector<std::string> column_sentences = effects::complete_columns(m);
   diagnose::DiagnoseOptions options;
   options.effects = effects::effect_catalogue({});
   options.most_effects = most;
   diagnose::Diagnosis found = diagnose::diagnose(machine.text, machine.machine, m, options);
   for (const std::string& sentence : column_sentences) found.explanation += " " + sentence;
+  for (const fit::FileNoise& one : noise) found.explanation += " " + one.sentence() + ".";
   found.next_measurement = plan::advice_for(machine.text, machine.machine, m, found, options.effects);
   result.json = results::diagnosis_json(found, m);
   // As --residuals of the command: what the machine at the end of the ladder leaves, read with its inputs.

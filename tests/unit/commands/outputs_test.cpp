@@ -309,5 +309,39 @@ TEST_F(Instruments, LaserAndTurnedTrackerAreFittedTogether) {
   ASSERT_EQ(run("vernier compare f.xml laser.csv --limit 1um"), 0) << said();
 }
 
+TEST_F(Instruments, AFileWithoutUBesideAFileWithUHasItsOwnNoise) {
+  std::string machine = kMachine;
+  machine.replace(machine.find("<k value=\"0.0001\""), 17, "<BaseShift/><k value=\"0\"");
+  write_file(in("m.xml"), machine);
+  std::string laser = "X[mm],x[mm],u[um]\n", coarse = "X[mm],x[mm]\n", few = coarse;
+  for (int i = 0; i <= 20; ++i) {
+    const double x = 30.0 * i, read = 1.0001 * x;
+    laser += std::to_string(x) + "," + std::to_string(read) + ",0.5\n";
+    // A residual of 20 um, without a period of the machine.
+    coarse += std::to_string(x) + "," + std::to_string(read + 5 + 0.02 * (i % 3 - 1)) + "\n";
+    if (i < 4) few += std::to_string(x) + "," + std::to_string(read + 5) + "\n";
+  }
+  write_file(in("laser.csv"), laser);
+  write_file(in("coarse.csv"), coarse);
+  write_file(in("few.csv"), few);
+  const std::string level =
+      "coarse.csv: the lengths of this file have no u, and other readings have one. The "
+      "estimate u = 1";  // 20 um * sqrt(2 / 3) is 16.3 um
+  ASSERT_EQ(run("vernier fit m.xml laser.csv coarse.csv -o f.xml"), 0) << said();
+  EXPECT_NE(said().find(level), std::string::npos) << said();
+  ASSERT_EQ(run("vernier diagnose m.xml laser.csv coarse.csv"), 0) << said();
+  EXPECT_NE(said().find(level), std::string::npos) << said();
+  ASSERT_EQ(run("vernier improve m.xml laser.csv coarse.csv -o better --yes"), 0) << said();
+  EXPECT_NE(said().find(level), std::string::npos) << said();
+  ASSERT_EQ(run("vernier compare f.xml laser.csv coarse.csv"), 0) << said();
+  EXPECT_NE(said().find("coarse.csv: the lengths of this file have no u"), std::string::npos) << said();
+  ASSERT_EQ(run("vernier check f.xml coarse.csv"), 0) << said();
+  EXPECT_NE(said().find("note: coarse.csv has no u: the standard uncertainty of its readings is taken as"),
+            std::string::npos)
+      << said();
+  EXPECT_EQ(run("vernier fit m.xml laser.csv few.csv -o f.xml"), 1) << said();
+  EXPECT_NE(said().find("State the standard uncertainty: a column u[um]"), std::string::npos) << said();
+}
+
 }  // namespace
 }  // namespace vernier::outputs_test

@@ -275,6 +275,23 @@ TEST(MeasurementLintOf, StationsAreProposedOnlyWithThreeReadingsForEachOfThem) {
   EXPECT_NE(lint("X Y Z", 4, "x[mm],y[mm],z[mm]").find("--stations X=25"), std::string::npos);
 }
 
+TEST(Lint, AFileWithoutUBesideAFileWithUIsAWarning) {
+  const std::string folder = testing::TempDir();
+  const std::string with = folder + "/with_u.csv", without = folder + "/without_u.csv";
+  text::write_file(with, "X[mm],x[mm],u[um]\n0,0,0.5\n100,100,0.5\n");
+  text::write_file(without, "X[mm],x[mm]\n0,0\n100,100\n");
+  const auto weight_of_u = [](const LintedFile& file) {
+    for (const LintFinding& finding : file.findings)
+      if (finding.word == "u") return std::optional(finding.weight);
+    return std::optional<LintWeight>();
+  };
+  const std::vector<LintedFile> alone = lint_files({without});
+  EXPECT_EQ(weight_of_u(alone[0]), LintWeight::kRemark);
+  const std::vector<LintedFile> both = lint_files({with, without});
+  EXPECT_FALSE(weight_of_u(both[0]));
+  EXPECT_EQ(weight_of_u(both[1]), LintWeight::kWarning);
+}
+
 TEST(ImportCommand, IsGivenForSpreadsheetsOnly) {
   EXPECT_EQ(import_command_for("X[mm],x[mm]\n1,2\n", "a.csv"), "");
   EXPECT_EQ(import_command_for("X[mm];x[mm]\n1;2\n", "a b.csv"),

@@ -135,6 +135,23 @@ TEST_F(Desk, DatumIsFittedBeforeRowsAreShown) {
   EXPECT_LT(largest(true), 0.003);
 }
 
+TEST_F(Desk, EveryFileHasItsOwnSetUp) {
+  std::string machine = test::kSmallMachine;
+  machine.insert(machine.find("</static>"),
+                 "<BaseShift X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>");
+  write_file(folder.in("b.xml"), machine);
+  write_file(folder.in("off.csv"),
+             "X[mm],Y[mm],x[mm],y[mm]\n0,0,5.001,0\n50,10,55,10.001\n100,60,104.999,60\n0,100,5,99.999\n");
+  // The second instrument is 1.5 m from the first.
+  write_file(folder.in("far.csv"),
+             "X[mm],Y[mm],x[mm],y[mm]\n0,0,1500.001,0\n50,10,1550,10.001\n100,60,1599.999,60\n"
+             "0,100,1500,99.999\n");
+  const Project project(folder.project());
+  RowCache rows(project);
+  const auto loaded = rows.get("b.xml", {"off.csv", "far.csv"}, true);
+  EXPECT_LT(residuals(loaded->machine, loaded->measurement).cwiseAbs().maxCoeff(), 0.003);
+}
+
 TEST_F(Desk, RowsMeasuredWithACorrectionFindItsImageInTheFolder) {
   const std::string in = "cd '" + folder.project() + "' && '" + test::program() + "' ";
   std::string machine = test::kSmallMachine;

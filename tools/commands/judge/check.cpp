@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
 #include "tools/check/history.h"
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
+#include "tools/maths/factors.h"
+#include "tools/model/fit_record.h"
 #include "tools/model/machine_writer.h"
 #include "tools/model/parameters.h"
 #include "tools/simulate/corrected.h"
@@ -66,6 +69,12 @@ std::string put_right(const CheckArguments& arguments, model::Machine machine, c
       check::verdict_name(answer.verdict), answer.changed.front().quantity.name, machine.file));
 }
 
+bool has_no_u(const model::Measurement& rows, std::size_t file) {
+  return std::any_of(rows.observations.begin(), rows.observations.end(), [&](const model::Observation& one) {
+    return rows.file[one.row] == file && !(model::uncertainty_of(rows, one) > 0);
+  });
+}
+
 void run_check(const CheckArguments& arguments) {
   if (!(arguments.false_alarms > 0 && arguments.false_alarms < 1))
     throw text::InputError({}, fmt::format("{}", arguments.false_alarms),
@@ -73,6 +82,13 @@ void run_check(const CheckArguments& arguments) {
   const model::Machine machine = read_model(arguments.machine);
   const model::Measurement rows = model::read_measurement(arguments.measurements, machine,
                                                           simulate::corrections_of_images(arguments.images));
+  for (std::size_t file = 0; file < rows.files.size(); ++file)
+    if (machine.fitted && has_no_u(rows, file))
+      fmt::print(
+          stderr,
+          "note: {} has no u: the standard uncertainty of its readings is taken as the rms residual of the "
+          "fit, {:.3g} um\n",
+          rows.files[file], machine.fitted->rms_mm * maths::kUmPerMm);
   check::CheckRecord now = check::record_of(
       machine, rows, arguments.label.empty() ? text::joined(arguments.measurements, " ") : arguments.label);
   check::CheckHistory history{check::identity_of(machine), {}};

@@ -222,11 +222,12 @@ void run_compare(const CompareArguments& arguments) {
   if (!arguments.before.empty() || !arguments.after.empty()) return run_before_after(arguments);
   if (arguments.measurements.empty())
     throw text::InputError("compare needs measurement files: MEAS, or --before and --after");
-  const auto [text, as_given, m] =
-      read_survey({arguments.machine, arguments.images, arguments.measurements, {}});
+  auto [text, as_given, m] = read_survey({arguments.machine, arguments.images, arguments.measurements, {}});
   repeat_findings(as_given);
-  const model::Machine machine = arguments.datum ? fit::set_up(as_given, m) : as_given;
+  model::Machine machine = arguments.datum ? fit::set_up(as_given, m) : as_given;
   const Eigen::VectorXd residual = fit::residuals(machine, m);
+  for (const fit::FileNoise& noise : fit::file_noise_of_residual(m, residual))
+    machine.notes.push_back(noise.sentence());
   nlohmann::ordered_json json = results::compare_json(machine, m, residual);
   results::add_failure(json, residual::failure_picture(machine, m, residual));
   if (arguments.datum) json["datum"] = "fitted";

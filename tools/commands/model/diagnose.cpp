@@ -119,7 +119,9 @@ void write_residuals(const DiagnoseArguments& arguments, const diagnose::Diagnos
 }
 
 void run_diagnose(const DiagnoseArguments& arguments) {
-  auto [text, machine, m] = read_survey(arguments.survey);
+  Survey survey = read_survey(arguments.survey);
+  std::vector<fit::FileNoise> noise = estimate_noise(survey);
+  auto& [text, machine, m] = survey;
   const std::vector<std::string> column_sentences = effects::complete_columns(m);
   diagnose::DiagnoseOptions options;
   options.effects = effects::effect_catalogue(arguments.effects);
@@ -127,6 +129,13 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   Progress progress("diagnose");
   options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
   diagnose::Diagnosis diagnosis = diagnose::diagnose(text, machine, m, options);
+  // An estimate of u contains the errors that the found effects explain.
+  constexpr int kMostRepeats = 2;
+  for (int count = 0; count < kMostRepeats && diagnosis.ladder.size() > 1 &&
+                      estimate_noise_again(diagnosis.machine_text, machine, m, noise);
+       ++count)
+    diagnosis = diagnose::diagnose(text, machine, m, options);
+  for (const std::string& sentence : noise_sentences(noise)) diagnosis.explanation += " " + sentence;
   for (const std::string& sentence : column_sentences) diagnosis.explanation += " " + sentence;
   diagnosis.next_measurement = plan::advice_for(text, machine, m, diagnosis, options.effects);
   const nlohmann::ordered_json json = results::diagnosis_json(diagnosis, m);

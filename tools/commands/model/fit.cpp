@@ -191,10 +191,12 @@ std::vector<std::size_t> readings_of(const model::Measurement& m) {
 }
 
 void run_fit(const FitArguments& arguments) {
-  const auto [text, machine, m] = read_survey(
+  Survey survey = read_survey(
       {arguments.machine, arguments.images, arguments.measurements, {}}, [&](const model::Machine& read) {
         return fit::with_freedom(read, split_all(arguments.free), split_all(arguments.hold));
       });
+  estimate_noise(survey);
+  const auto& [text, machine, m] = survey;
   fit::FitOptions options;
   options.loss = arguments.loss == "huber"    ? fit::Loss::kHuber
                  : arguments.loss == "cauchy" ? fit::Loss::kCauchy

@@ -132,6 +132,7 @@ class Improver {
       : arguments_(arguments),
         out_(human_stream(arguments.json)),
         survey_(read_survey(arguments.survey)),
+        noise_(estimate_noise(survey_)),
         column_sentences_(effects::complete_columns(survey_.rows)),
         text_(std::move(survey_.text)),
         machine_(std::move(survey_.machine)),
@@ -156,6 +157,7 @@ class Improver {
     options.progress = [&](double share, const std::string& step) { progress.update(share, step); };
     diagnose::Diagnosis d = diagnose::diagnose(text_, machine_, rows_, options);
     for (const std::string& sentence : column_sentences_) d.explanation += " " + sentence;
+    for (const std::string& sentence : noise_sentences(noise_)) d.explanation += " " + sentence;
     d.next_measurement = plan::advice_for(text_, machine_, rows_, d, effects_);
     if (round == 0 && !d.end.absurd.empty()) throw text::LimitNotMet(d.end.absurd + "; nothing is written");
     last_ = results::diagnosis_json(d, rows_);
@@ -210,6 +212,8 @@ class Improver {
     text_ = model_steps_.back().text;
     machine_ = model::parse_machine(text_, arguments_.survey.machine);
     rows_ = model::rebind(rows_, before, machine_);
+    // An estimate of u contains the errors that the added effects explain.
+    estimate_noise_again(text_, machine_, rows_, noise_);
   }
 
   /// Returns what the user has although no cause is certain: the machine without the open causes, the size of
@@ -441,6 +445,7 @@ class Improver {
   const ImproveArguments& arguments_;
   std::FILE* out_;
   Survey survey_;
+  std::vector<fit::FileNoise> noise_;          // estimates of u
   std::vector<std::string> column_sentences_;  // how undeclared columns got a value in every row
   std::string text_;
   model::Machine machine_, first_;

@@ -9,6 +9,7 @@
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/model/plan_kinds.h"
 #include "tools/effects/catalogue.h"
+#include "tools/fit/file_noise.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/plan/check_plan.h"
@@ -216,8 +217,10 @@ void run_plan(const PlanArguments& arguments) {
   if (arguments.separate.empty()) return run_accuracy_plan(arguments);
   const std::string text = text::read_file(arguments.machine);
   const model::Machine machine = model::parse_machine(text, arguments.machine);
-  const model::Measurement m = model::read_measurement(arguments.measurements, machine,
-                                                       simulate::corrections_of_images(arguments.images));
+  model::Measurement m = model::read_measurement(arguments.measurements, machine,
+                                                 simulate::corrections_of_images(arguments.images));
+  for (const fit::FileNoise& noise : fit::estimate_file_noise(machine, m))
+    fmt::print(stderr, "note: {}\n", noise.sentence());
   const std::vector<effects::Effect> effects = effects::effect_catalogue(arguments.effects);
   const std::vector<std::string> hypotheses = plan::split_hypotheses(arguments.separate, effects);
   plan::PlanOptions options;

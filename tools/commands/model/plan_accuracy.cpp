@@ -43,8 +43,10 @@ std::vector<model::WorkRange> region_of(const model::Machine& machine, const std
 
 plan::Knowledge knowledge_from(const PlanArguments& arguments, const model::Machine& machine) {
   if (arguments.measurements.empty()) return plan::knowledge_of(machine);
-  const model::Measurement rows = model::read_measurement(arguments.measurements, machine,
-                                                          simulate::corrections_of_images(arguments.images));
+  model::Measurement rows = model::read_measurement(arguments.measurements, machine,
+                                                    simulate::corrections_of_images(arguments.images));
+  for (const fit::FileNoise& noise : fit::estimate_file_noise(machine, rows))
+    fmt::print(stderr, "note: {}\n", noise.sentence());
   const fit::FitResult fitted = fit::fit(machine, rows);
   if (!fitted.absurd.empty()) throw text::LimitNotMet(fitted.absurd);
   if (!fitted.converged) throw text::LimitNotMet("the fit of the measured rows did not converge");

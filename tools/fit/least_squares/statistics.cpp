@@ -77,7 +77,9 @@ struct RepeatPool {
 /// Factor from mm or deg to um or urad.
 double report_factor(bool rotations) { return rotations ? maths::kUradPerDeg : maths::kUmPerMm; }
 
-std::optional<double> repeat_noise(const model::Measurement& m, bool rotations) {
+}  // namespace
+
+std::optional<RepeatNoise> noise_of_repeats(const model::Measurement& m, bool rotations) {
   struct PoseReadings {
     double sum = 0, squares = 0;
     std::size_t count = 0;
@@ -105,11 +107,16 @@ std::optional<double> repeat_noise(const model::Measurement& m, bool rotations) 
     freedom += group.count - 1;
   }
   if (freedom < kLeastRepeatFreedom) return std::nullopt;
-  return std::sqrt(squares / static_cast<double>(freedom));
+  return RepeatNoise{std::sqrt(squares / static_cast<double>(freedom)), freedom};
 }
 
+namespace {
+
 std::optional<double> noise_of(const model::Measurement& m, bool rotations) {
-  if (!has_uncertainty(m)) return repeat_noise(m, rotations);
+  if (!has_uncertainty(m)) {
+    const std::optional<RepeatNoise> repeats = noise_of_repeats(m, rotations);
+    return repeats ? std::optional(repeats->value) : std::nullopt;
+  }
   RepeatPool pool;
   for (const model::Observation& o : m.observations)
     if (m.check[o.row] == 0 && model::is_rotation(o.kind) == rotations)

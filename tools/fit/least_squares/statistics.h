@@ -38,6 +38,15 @@ std::optional<double> noise_um(const model::Measurement& m);
 /// Returns the noise of the rotation readings, urad. The method is that of noise_um().
 std::optional<double> noise_urad(const model::Measurement& m);
 
+/// Pooled standard deviation of repeats, and its degrees of freedom.
+struct RepeatNoise {
+  double value = 0;  // um; urad of rotations
+  std::size_t freedom = 0;
+};
+/// Returns the noise of the length or rotation readings from repeats alone, as noise_um() and noise_urad() do
+/// for rows without u. nullopt: the repeats have less than 5 degrees of freedom.
+std::optional<RepeatNoise> noise_of_repeats(const model::Measurement& m, bool rotations);
+
 /// Returns the length and the angle that a weighted reading of 1 represents: the rms of u over the fit rows,
 /// or 1 mm and 1 deg if u is absent.
 NoiseUnit noise_unit(const model::Measurement& m);

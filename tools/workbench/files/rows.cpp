@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tools/effects/add_string.h"
 #include "tools/effects/fitted_effect.h"
+#include "tools/effects/survey.h"
+#include "tools/fit/file_noise.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/set_up.h"
@@ -13,7 +16,6 @@
 #include "tools/maths/factors.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/fit_record.h"
-#include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/results/detail.h"
 #include "tools/results/results.h"
@@ -143,15 +145,20 @@ std::shared_ptr<const LoadedRows> RowCache::get(const std::string& machine,
       if (entry.key == key) return entry.rows;
   }
   auto rows = std::make_shared<LoadedRows>();
-  rows->text = text::read_file(project_.existing(machine).string());
-  rows->machine = model::parse_machine(rows->text, machine);
   std::vector<std::string> paths;
   for (const std::string& name : measurements) paths.push_back(project_.existing(name).string());
-  rows->measurement = model::read_measurement(paths, rows->machine,
-                                              simulate::corrections_of_images(project_.root().string()));
+  effects::CompletedSurvey survey =
+      effects::complete_survey(text::read_file(project_.existing(machine).string()), machine, paths,
+                               simulate::corrections_of_images(project_.root().string()));
+  rows->text = std::move(survey.text);
+  rows->machine = std::move(survey.machine);
+  rows->measurement = std::move(survey.rows);
   rows->datum = datum;
   if (datum) rows->machine = fit::set_up(rows->machine, rows->measurement);
   rows->measurement.files = measurements;
+  for (const fit::FileNoise& noise :
+       fit::file_noise_of_residual(rows->measurement, fit::residuals(rows->machine, rows->measurement)))
+    rows->notes.push_back(noise.sentence());
   const std::scoped_lock lock(guard_);
   if (kept_.size() >= kKeptRows) kept_.erase(kept_.begin());
   kept_.push_back({key, rows});
@@ -168,6 +175,7 @@ std::string rows_blob(const LoadedRows& rows) {
       {"machine", machine.name}, {"files", m.files}, {"n_rows", m.rows()}, {"n_excluded", m.excluded}};
   add_figures(json, m, residual);
   json["noise_um"] = text::or_null(fit::noise_um(m));
+  json["notes"] = rows.notes;
   json["corrected"] =
       std::any_of(m.corrected.begin(), m.corrected.end(), [](const auto& one) { return !one.empty(); });
   json["columns"] = Json::array();

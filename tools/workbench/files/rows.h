@@ -13,12 +13,14 @@
 
 namespace vernier::workbench {
 
-/// A machine and measurement rows that were read from the files of a project.
+/// A machine and measurement rows that were read from the files of a project. Each measurement file has its
+/// own set-up, as for the commands (effects::complete_survey).
 struct LoadedRows {
   std::string text;        // text of the machine file
   model::Machine machine;  // the machine; if requested, with its set-up fitted to the rows
   bool datum = false;
   model::Measurement measurement;
+  std::vector<std::string> notes;  // estimates of u for files without u beside files with u
 };
 
 /// Reads machines with their measurements. The last few results stay in memory as long as their files do not

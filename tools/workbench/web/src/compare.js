@@ -35,6 +35,9 @@ function figures(result) {
   return box;
 }
 
+/** What the command added or assumed: set-ups, a noise that no file states. */
+const notes = (result) => (result.notes ?? []).map((one) => el('p', { class: 'note' }, printed(one)));
+
 function findings(result) {
   const list = (result.findings ?? [])
     .slice(0, 8)
@@ -196,7 +199,7 @@ export function compareView(root) {
     const state = await guarded(error, () => run({ command: 'compare', ...compared() }));
     if (!state || asked !== JSON.stringify(compared())) return;
     store.compare = state.result;
-    numbers.replaceChildren(figures(state.result));
+    numbers.replaceChildren(figures(state.result), ...notes(state.result));
     where.replaceChildren(findings(state.result));
     emit('compared');
   }

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Readings without u beside readings with u: their noise is estimated, not taken as 1 mm.
+#include "tools/fit/file_noise.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tools/fit/fit.h"
+#include "tools/model/machine_reader.h"
+#include "tools/text/error.h"
+
+namespace vernier::file_noise_test {
+
+using namespace vernier::fit;
+using namespace vernier::model;
+namespace {
+
+constexpr double kSquareness = 55e-6, kTracker_mm = 6e-3;
+
+/// Three axes with a free squareness and a free scale of X, and one set-up for each of the two instruments.
+Machine machine() {
+  return parse_machine(
+      "<machine name=\"m\"><variables><static><EC0Y value=\"0\" nominal=\"0\" unit=\"rad\"/>"
+      "<sx value=\"0\" nominal=\"0\"/><BaseShift X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>"
+      "<BaseShift setup=\"tracker\" X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/></static>"
+      "<machineaxes><X min=\"0\" max=\"800\"/><Y min=\"0\" max=\"500\"/><Z min=\"-400\" max=\"0\"/>"
+      "</machineaxes></variables><transforms branch=\"tool\">"
+      "<sixdof X=\"X*(1+sx)-EC0Y*Y\" Y=\"Y\" Z=\"Z\"/></transforms></machine>",
+      "m.xml");
+}
+
+std::string laser(std::mt19937_64& random) {
+  std::normal_distribution<double> noise(0, 0.5e-3);
+  std::string csv = "X[mm],Y[mm],Z[mm],x[mm],u[um]\n";
+  for (int i = 0; i <= 20; ++i)
+    csv += fmt::format("{},250,-200,{:.6f},0.5\n", 40 * i,
+                       40 * i * (1 + 30e-6) - kSquareness * 250 + noise(random));
+  return csv;
+}
+
+/// `repeats`: how often each point is read. `head`, `tail`: of an additional column.
+std::string tracker(std::mt19937_64& random, int points, int repeats = 1, const std::string& head = "",
+                    const std::string& tail = "") {
+  std::normal_distribution<double> noise(0, kTracker_mm);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::string csv = "X[mm],Y[mm],Z[mm],x[mm],y[mm],z[mm]" + head + "\n";
+  for (int i = 0; i < points; ++i) {
+    const double x = 800 * share(random), y = 500 * share(random), z = -400 * share(random);
+    for (int k = 0; k < repeats; ++k)
+      csv += fmt::format("{:.4f},{:.4f},{:.4f},{:.6f},{:.6f},{:.6f}{}\n", x, y, z,
+                         x * (1 + 30e-6) - kSquareness * y + noise(random), y + noise(random),
+                         z + noise(random), tail);
+  }
+  return csv;
+}
+
+Measurement both(const std::string& first, const std::string& second) {
+  Measurement all = parse_measurement(first, "laser.csv", machine());
+  append_measurement(all, parse_measurement(second, "tracker.csv", machine()));
+  return all;
+}
+
+TEST(FileNoise, AFileWithoutUGetsItsOwnNoise) {
+  std::mt19937_64 random(20261129);
+  Measurement rows = both(laser(random), tracker(random, 75));
+  const std::vector<FileNoise> noise = estimate_file_noise(machine(), rows);
+  ASSERT_EQ(noise.size(), 1u);
+  EXPECT_EQ(noise[0].name, "tracker.csv");
+  EXPECT_FALSE(noise[0].open);
+  // 225 readings, less the six values of the set-up and most of the squareness.
+  EXPECT_NEAR(noise[0].freedom, 218, 1.5);
+  EXPECT_NEAR(noise[0].u, kTracker_mm, 3 * noise[0].std);
+  EXPECT_NEAR(noise[0].std, kTracker_mm / std::sqrt(2 * 218.0), 0.05e-3);
+  EXPECT_NE(noise[0].sentence().find("tracker.csv: the lengths of this file have no u"), std::string::npos);
+  const FitResult fitted = fit::fit(machine(), rows);
+  for (const ParameterEstimate& one : fitted.estimates)
+    if (one.name == "EC0Y") {
+      EXPECT_NEAR(one.value, kSquareness, 4 * one.std);
+      // 6 um / (144 mm * sqrt(75)) is 4.8 urad; the rotation of the set-up adds to it.
+      EXPECT_LT(one.std, 7e-6);
+    }
+}
+
+TEST(FileNoise, OutliersCountAsThreeStandardDeviations) {
+  std::mt19937_64 random(20261130);
+  Measurement rows = both(laser(random), tracker(random, 75));
+  rows.observations.back().value += 10;  // a lost beam, mm
+  const std::vector<FileNoise> noise = estimate_file_noise(machine(), rows);
+  // One reading in 225 with a squared residual of 9: 2 % of u; the outlier moves the set-up by 10 mm / 75.
+  EXPECT_LT(noise.at(0).u, 30 * kTracker_mm);
+}
+
+TEST(FileNoise, RepeatsInTheFileCountBeforeTheResidual) {
+  std::mt19937_64 random(20261131);
+  Measurement rows = both(laser(random), tracker(random, 20, 3));
+  const std::vector<FileNoise> noise = estimate_file_noise(machine(), rows);
+  ASSERT_EQ(noise.size(), 1u);
+  EXPECT_EQ(noise[0].source, FileNoise::Source::kRepeats);
+  EXPECT_EQ(noise[0].freedom, 120);  // 20 points, 3 coordinates, 2 each
+  EXPECT_NEAR(noise[0].u, kTracker_mm, 3 * noise[0].std);
+}
+
+TEST(FileNoise, TooFewReadingsAreRefusedWithTheRemedy) {
+  std::mt19937_64 random(20261132);
+  Measurement rows = both(laser(random), tracker(random, 3));
+  try {
+    estimate_file_noise(machine(), rows);
+    FAIL() << "nine readings for seven values";
+  } catch (const text::InputError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("tracker.csv: the lengths of this file have no u"), std::string::npos) << what;
+    EXPECT_NE(what.find("a column u[um], or <instrument u="), std::string::npos) << what;
+  }
+}
+
+TEST(FileNoise, NothingIsEstimatedIfAllFilesOrNoFileStateU) {
+  std::mt19937_64 random(20261133);
+  Measurement stated = both(laser(random), tracker(random, 20, 1, ",u[um]", ",6"));
+  EXPECT_TRUE(estimate_file_noise(machine(), stated).empty());
+  Measurement unstated = parse_measurement(tracker(random, 20), "tracker.csv", machine());
+  EXPECT_TRUE(estimate_file_noise(machine(), unstated).empty());
+  EXPECT_EQ(unstated.uncertainty.maxCoeff(), 0);
+}
+
+TEST(FileNoise, CheckRowsAloneAreNoFileToEstimate) {
+  std::mt19937_64 random(20261134);
+  Measurement rows = both(laser(random), tracker(random, 20, 1, ",role", ",check"));
+  EXPECT_TRUE(estimate_file_noise(machine(), rows).empty());
+}
+
+TEST(FileNoise, AComparisonTakesTheResidualOfTheGivenMachine) {
+  std::mt19937_64 random(20261135);
+  Measurement rows = both(laser(random), tracker(random, 75));
+  const Eigen::VectorXd residual = residuals(machine(), rows);
+  const std::vector<FileNoise> noise = file_noise_of_residual(rows, residual);
+  ASSERT_EQ(noise.size(), 1u);
+  EXPECT_EQ(noise[0].source, FileNoise::Source::kGivenMachine);
+  EXPECT_GT(noise[0].u, 1.2 * kTracker_mm) << "the squareness is part of it";
+  EXPECT_GT(rows.uncertainty.minCoeff(), 0);
+}
+
+TEST(FileNoise, AnEffectThatExplainsTheResidualLowersTheEstimate) {
+  std::mt19937_64 random(20261136);
+  Measurement rows = both(laser(random), tracker(random, 75));
+  Machine without = machine();
+  for (Static& item : without.statics) item.hidden = true;  // neither squareness nor scale
+  std::vector<FileNoise> noise = estimate_file_noise(without, rows);
+  ASSERT_EQ(noise.size(), 1u);
+  const double before = noise[0].u;
+  EXPECT_GT(before, 1.1 * kTracker_mm);
+  EXPECT_FALSE(estimate_file_noise_again(without, rows, noise));
+  EXPECT_EQ(noise[0].u, before);
+  EXPECT_TRUE(estimate_file_noise_again(machine(), rows, noise));
+  EXPECT_NEAR(noise[0].u, kTracker_mm, 3 * noise[0].std);
+  EXPECT_EQ(rows.uncertainty[static_cast<Eigen::Index>(rows.rows()) - 1], noise[0].u);
+}
+
+}  // namespace
+}  // namespace vernier::file_noise_test

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/fit/file_noise.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/fit/fit.h"
+#include "tools/fit/least_squares/statistics.h"
+#include "tools/fit/set_up.h"
+#include "tools/maths/factors.h"
+#include "tools/maths/median.h"
+#include "tools/text/error.h"
+
+namespace vernier::fit {
+namespace {
+
+/// As for repeats: below it, the uncertainty of the estimate exceeds 30 %.
+constexpr double kLeastFreedom = 5;
+/// Residuals beyond this many standard deviations count as this many. Of normal residuals it lowers the
+/// estimate by 0.3 %.
+constexpr double kFar = 3;
+/// Change of an estimate below which the iteration ends: a tenth of its own uncertainty with 1000 readings.
+constexpr double kSettled = 0.02;
+constexpr int kMostFits = 12;
+/// Change of an estimate by which a machine with an additional effect counts as another model of the noise:
+/// the weights of the file then change by 20 %.
+constexpr double kOtherModel = 0.1;
+/// Least estimate, mm or deg: below the resolution of any instrument, and not 0 for readings without
+/// residual.
+constexpr double kLeast = 1e-7;
+
+bool is_of(const model::Measurement& rows, const FileNoise& noise, const model::Observation& one) {
+  return rows.file[one.row] == noise.file && model::is_rotation(one.kind) == noise.rotations;
+}
+
+/// The lengths and the rotations of each file that have no u; empty if no fit reading has u.
+std::vector<FileNoise> without_u(const model::Measurement& rows) {
+  std::vector<FileNoise> list;
+  bool any = false;
+  for (const model::Observation& one : rows.observations) {
+    if (rows.check[one.row] != 0) continue;
+    if (model::uncertainty_of(rows, one) > 0) {
+      any = true;
+      continue;
+    }
+    if (std::any_of(list.begin(), list.end(), [&](const FileNoise& n) { return is_of(rows, n, one); }))
+      continue;
+    FileNoise noise;
+    noise.file = rows.file[one.row];
+    noise.name = rows.files[noise.file];
+    noise.rotations = model::is_rotation(one.kind);
+    list.push_back(std::move(noise));
+  }
+  return any ? list : std::vector<FileNoise>{};
+}
+
+void write(model::Measurement& rows, const FileNoise& noise) {
+  if (noise.rotations && rows.angle_uncertainty.size() == 0)
+    rows.angle_uncertainty = model::Column::Zero(static_cast<Eigen::Index>(rows.rows()));
+  model::Column& column = noise.rotations ? rows.angle_uncertainty : rows.uncertainty;
+  for (std::size_t row = 0; row < rows.rows(); ++row)
+    if (rows.file[row] == noise.file) column[static_cast<Eigen::Index>(row)] = noise.u;
+}
+
+model::Measurement fit_rows_of(const model::Measurement& rows, const FileNoise& noise) {
+  std::vector<std::size_t> keep;
+  for (std::size_t row = 0; row < rows.rows(); ++row)
+    if (rows.file[row] == noise.file && rows.check[row] == 0) keep.push_back(row);
+  return model::select_rows(rows, keep);
+}
+
+/// Residuals of the fit readings of a file, mm or deg.
+std::vector<double> residuals_of(const model::Measurement& rows, const FileNoise& noise,
+                                 const Eigen::VectorXd& residual) {
+  std::vector<double> list;
+  for (std::size_t i = 0; i < rows.observations.size(); ++i)
+    if (rows.check[rows.observations[i].row] == 0 && is_of(rows, noise, rows.observations[i]))
+      list.push_back(residual[static_cast<Eigen::Index>(i)]);
+  return list;
+}
+
+double sum_of_squares(const std::vector<double>& residuals) {
+  const double far = kFar * maths::robust_spread(residuals);
+  double sum = 0;
+  // More than half of the residuals can be 0.
+  for (const double one : residuals) sum += far > 0 ? std::min(one * one, far * far) : one * one;
+  return sum;
+}
+
+/// A first value that is too large rather than too small: the residual of the given machine, with the
+/// instrument placed for the file.
+double first_value(const model::Machine& machine, const model::Measurement& rows, const FileNoise& noise) {
+  const model::Measurement own = fit_rows_of(rows, noise);
+  FileNoise alone = noise;
+  alone.file = own.file.front();
+  const std::vector<double> left = residuals_of(own, alone, residuals(set_up(machine, own), own));
+  return std::max(kLeast, std::sqrt(sum_of_squares(left) / static_cast<double>(left.size())));
+}
+
+/// Values of touched objects that the fit estimates, shared among the readings that touch one.
+double estimated_values_per_touch(const model::Measurement& rows) {
+  double touches = 0;
+  for (const model::Observation& one : rows.observations)
+    if (rows.check[one.row] == 0 && model::is_of_thing(one.kind)) ++touches;
+  if (touches == 0) return 0;
+  double values = 0;
+  for (const model::Thing& thing : rows.things) values += thing.in_measuring_frame() ? 0 : 3;
+  return std::min(1.0, values / touches);
+}
+
+/// Takes the repeats of the file. Returns false if there are too few.
+bool take_repeats(const model::Measurement& rows, FileNoise& noise) {
+  const std::optional<RepeatNoise> repeats = noise_of_repeats(fit_rows_of(rows, noise), noise.rotations);
+  if (!repeats || repeats->value <= 0) return false;
+  noise.source = FileNoise::Source::kRepeats;
+  noise.u = repeats->value / (noise.rotations ? maths::kUradPerDeg : maths::kUmPerMm);
+  noise.freedom = static_cast<double>(repeats->freedom);
+  noise.std = noise.u / std::sqrt(2 * noise.freedom);
+  return true;
+}
+
+[[noreturn]] void refuse(const FileNoise& noise, std::size_t readings) {
+  throw text::InputError(fmt::format(
+      "{}: the {} of this file have no {}, and other readings of the survey have one. The {} reading{} of "
+      "the "
+      "file leave {:.2g} degrees of freedom beside the model: too few to estimate the noise ({} are "
+      "necessary). "
+      "State the standard uncertainty: a column {}",
+      noise.name, noise.rotations ? "rotations" : "lengths", noise.rotations ? "ua" : "u", readings,
+      readings == 1 ? "" : "s", std::max(0.0, noise.freedom), kLeastFreedom,
+      noise.rotations ? "ua[arcsec]"
+                      : "u[um], or <instrument u=\"...\"/> under <variables> of the machine file"));
+}
+
+/// Estimates one file beside a fit. Returns the relative change.
+double estimate(const model::Measurement& rows, const FitResult& fit, FileNoise& noise) {
+  const std::vector<double> left = residuals_of(rows, noise, fit.residual);
+  noise.freedom = 0;
+  const double per_touch = estimated_values_per_touch(rows);
+  for (std::size_t i = 0; i < rows.observations.size() && fit.prediction_variance.size() > 0; ++i) {
+    const model::Observation& one = rows.observations[i];
+    if (rows.check[one.row] != 0 || !is_of(rows, noise, one)) continue;
+    const double leverage =
+        fit.prediction_variance[static_cast<Eigen::Index>(i)] / (fit.variance_factor * noise.u * noise.u);
+    noise.freedom += 1 - std::min(1.0, leverage) - (model::is_of_thing(one.kind) ? per_touch : 0);
+  }
+  if (noise.freedom < kLeastFreedom) refuse(noise, left.size());
+  const double before = noise.u;
+  noise.u = std::max(kLeast, std::sqrt(sum_of_squares(left) / noise.freedom));
+  noise.std = noise.u / std::sqrt(2 * noise.freedom);
+  return std::abs(noise.u / before - 1);
+}
+
+/// Repeats fits and estimates until the estimates do not change. `rows` and `list` have first values.
+void iterate(const model::Machine& machine, model::Measurement& rows, std::vector<FileNoise>& list) {
+  FitOptions independent;
+  independent.noise = NoiseModel{};
+  double change = 1;
+  for (int count = 0; count < kMostFits && change > kSettled; ++count) {
+    const FitResult result = fit(machine, rows, independent);
+    change = 0;
+    for (FileNoise& noise : list)
+      if (noise.source != FileNoise::Source::kRepeats)
+        change = std::max(change, estimate(rows, result, noise));
+    for (const FileNoise& noise : list) write(rows, noise);
+  }
+  for (FileNoise& noise : list) noise.open = noise.source != FileNoise::Source::kRepeats && change > kSettled;
+}
+
+bool all_from_repeats(const std::vector<FileNoise>& list) {
+  return std::all_of(list.begin(), list.end(),
+                     [](const FileNoise& noise) { return noise.source == FileNoise::Source::kRepeats; });
+}
+
+}  // namespace
+
+std::string FileNoise::sentence() const {
+  constexpr const char* kSources[] = {
+      "the repeated readings of the file",
+      "the residual of the file beside the fitted model, which can contain errors of the model",
+      "the residual of the file with the given machine, which contains the errors of the machine"};
+  const double factor = rotations ? maths::kArcsecPerDeg : maths::kUmPerMm;
+  return fmt::format(
+      "{}: the {} of this file have no {}, and other readings have one. The estimate {} = {:.3g} {} +- "
+      "{:.2g} "
+      "is used{}, from {} ({:.0f} degrees of freedom). If you know the standard uncertainty, state it in a "
+      "column {}",
+      name, rotations ? "rotations" : "lengths", rotations ? "ua" : "u", rotations ? "ua" : "u", u * factor,
+      rotations ? "arcsec" : "um", std * factor, open ? " (it did not converge)" : "",
+      kSources[static_cast<std::size_t>(source)], freedom, rotations ? "ua[arcsec]" : "u[um]");
+}
+
+std::vector<FileNoise> estimate_file_noise(const model::Machine& machine, model::Measurement& rows) {
+  std::vector<FileNoise> list = without_u(rows);
+  for (FileNoise& noise : list) {
+    if (!take_repeats(rows, noise)) noise.u = first_value(machine, rows, noise);
+  }
+  for (const FileNoise& noise : list) write(rows, noise);
+  if (!all_from_repeats(list)) iterate(machine, rows, list);
+  return list;
+}
+
+std::vector<FileNoise> file_noise_of_residual(model::Measurement& rows, const Eigen::VectorXd& residual) {
+  std::vector<FileNoise> list = without_u(rows);
+  for (FileNoise& noise : list) {
+    if (take_repeats(rows, noise)) continue;
+    const std::vector<double> left = residuals_of(rows, noise, residual);
+    noise.source = FileNoise::Source::kGivenMachine;
+    noise.freedom = static_cast<double>(left.size());
+    noise.u = std::max(kLeast, std::sqrt(sum_of_squares(left) / noise.freedom));
+    noise.std = noise.u / std::sqrt(2 * noise.freedom);
+  }
+  for (const FileNoise& noise : list) write(rows, noise);
+  return list;
+}
+
+bool estimate_file_noise_again(const model::Machine& machine, model::Measurement& rows,
+                               std::vector<FileNoise>& noise) {
+  if (all_from_repeats(noise)) return false;
+  std::vector<FileNoise> next = noise;
+  model::Measurement changed = rows;
+  iterate(machine, changed, next);
+  bool other = false;
+  for (std::size_t i = 0; i < next.size(); ++i)
+    other = other || std::abs(next[i].u / noise[i].u - 1) > kOtherModel;
+  if (!other) return false;
+  noise = std::move(next);
+  rows = std::move(changed);
+  return true;
+}
+
+}  // namespace vernier::fit
