@@ -203,11 +203,31 @@ class Diagnoser {
   }
 
   /// The many readings of one instrument must not hide that those of another contradict a step.
-  bool is_contradicted(const Proof& proof, const fit::FitResult& before, const fit::FitResult& after) const {
-    if (proof.files.empty()) return false;
-    return is_contradicted_by_a_file(proof, options_.thresholds.proof,
-                                     model::rebind(measurement_, base_.machine, after.machine), before, after,
-                                     finder_.evidence().noise_of_file(), variance_beside(after));
+  std::optional<Proof::OfFile> contradiction(const Proof& proof, const fit::FitResult& before,
+                                             const effects::FittedEffects& after) const {
+    if (proof.files.empty()) return std::nullopt;
+    const model::Measurement rows = model::rebind(measurement_, base_.machine, after.fit.machine);
+    return contradicting_file(proof, options_.thresholds.proof, rows, before, after.fit,
+                              part_of_term(after.fit.machine, after.effects.back(), rows),
+                              finder_.evidence().noise_of_file(), variance_beside(after.fit));
+  }
+
+  /// States which check rows contradict a step, and by which figure.
+  std::string contradicted_by(const Proof::OfFile& one) const {
+    return fmt::format(
+        "test `held out`: the check rows of {} contradict the effect: their sum of squares, weighted by "
+        "1/u^2, "
+        "increases by {:.3g}",
+        measurement_.files[one.file], -2 * one.evidence);
+  }
+
+  /// What the term of an effect contributes to the prediction of each reading, mm or deg.
+  static Eigen::VectorXd part_of_term(const model::Machine& machine, const effects::Candidate& effect,
+                                      const model::Measurement& rows) {
+    model::Machine without = machine;
+    for (const effects::CandidateUnknown& unknown : effects::linear_unknowns(effect))
+      if (const auto at = without.find_static(unknown.name)) without.statics[*at].value = 0;
+    return fit::residuals(without, rows) - fit::residuals(machine, rows);
   }
 
   /// Returns the fitted machine as a file, with the noise findings of its own residual. The search
@@ -221,7 +241,7 @@ class Diagnoser {
     std::vector<std::size_t> accepted;       // items that lower chi^2 in the fit, and that the rows confirm
     std::set<std::size_t> confirmed;         // of these, items that the check rows confirm
     std::vector<std::string> not_confirmed;  // names of steps that the check rows do not confirm
-    std::vector<std::size_t> contradicted;   // of these, items that one file of check rows contradicts
+    std::vector<Contradicted> contradicted;  // of these, items that one file of check rows contradicts
     std::vector<LadderStep> ladder;          // begins with the model as given
     std::string machine_text;
     fit::FitResult end;
@@ -234,6 +254,7 @@ class Diagnoser {
     start.check_rms_um = base_.check.rms_um;
     start.rms_urad = base_.after.rms_urad;
     start.check_rms_urad = base_.check.rms_urad;
+    start.check_files = checks_of_files(measurement_, base_.residual);
     start.chi_square_per_freedom = base_.chi_square / std::max(1.0, base_.freedom);
     start.text = given_model();
     return start;
@@ -259,11 +280,11 @@ class Diagnoser {
         continue;
       }
       const Proof proof = proof_of(steps.end, fitted.fit);
-      const bool contradicted = is_contradicted(proof, steps.end, fitted.fit);
+      const std::optional<Proof::OfFile> contradicted = contradiction(proof, steps.end, fitted);
       const std::optional<StepEvidence> confirmation =
           contradicted ? std::nullopt : confirmed_by(proof, item);
       if (!confirmation) {
-        if (contradicted) steps.contradicted.push_back(item);
+        if (contradicted) steps.contradicted.push_back({item, contradicted_by(*contradicted)});
         steps.not_confirmed.push_back(pool_.candidate(item).spoken);
         exclude();
         continue;
@@ -290,6 +311,7 @@ class Diagnoser {
     step.check_rms_um = fitted.fit.check.rms_um;
     step.rms_urad = fitted.fit.after.rms_urad;
     step.check_rms_urad = fitted.fit.check.rms_urad;
+    step.check_files = checks_of_files(fitted.rows, fitted.fit.residual);
     step.chi_square_per_freedom = fitted.fit.chi_square / std::max(1.0, fitted.fit.freedom);
     step.text = fitted.text;
     return step;

@@ -74,7 +74,7 @@ void Finder::find() {
   if (!evidence_.noise().independent()) order_by_size();
 }
 
-void Finder::find_without(const std::vector<std::size_t>& items) {
+void Finder::find_without(const std::vector<Contradicted>& items) {
   contradicted_.insert(contradicted_.end(), items.begin(), items.end());
   ban_contradicted();
   select_again();
@@ -86,10 +86,10 @@ void Finder::find_without(const std::vector<std::size_t>& items) {
 }
 
 void Finder::ban_contradicted() {
-  for (const std::size_t item : contradicted_)
+  for (const Contradicted& one : contradicted_)
     for (std::size_t other = 0; other < pool_.size(); ++other)
-      if (!pool_[other].banned && (other == item || pool_.same_columns(item, other)))
-        pool_.ban(other, "test `held out`: check rows contradict the effect");
+      if (!pool_[other].banned && (other == one.item || pool_.same_columns(one.item, other)))
+        pool_.ban(other, one.why);
 }
 
 void Finder::order_by_size() {

@@ -30,6 +30,12 @@ struct Alternatives {
   std::vector<std::size_t> within(double distance) const;
 };
 
+/// A candidate that held-out rows contradict, and the reason for the user.
+struct Contradicted {
+  std::size_t item = 0;
+  std::string why;
+};
+
 /// Searches the candidate effects of one fitted machine for the set that explains the residual of the fit.
 /// Finder keeps the candidate effects that pass every acceptance test. Finder uses the linearised problem and
 /// makes no new fit.
@@ -48,7 +54,7 @@ class Finder {
   void find();
 
   /// Searches on without these candidates, and without those of the same columns.
-  void find_without(const std::vector<std::size_t>& items);
+  void find_without(const std::vector<Contradicted>& items);
 
   /// Returns the indices of the accepted effects in the pool; the effect that explains most is first.
   const std::vector<std::size_t>& chosen() const { return chosen_; }
@@ -262,7 +268,7 @@ class Finder {
   SelectionProblem problem_;
   std::vector<std::size_t> entry_item_, chosen_;
   std::vector<std::vector<std::size_t>> starts_;  // sets of items from which a selection begins too
-  std::vector<std::size_t> contradicted_;         // items that held-out rows contradict
+  std::vector<Contradicted> contradicted_;        // items that held-out rows contradict
   double criterion_ = 0, chi_square_ = 0;
 };
 

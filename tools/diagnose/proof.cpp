@@ -56,17 +56,32 @@ double variance_by_parameters(const model::Measurement& rows, std::size_t file, 
   return moved.dot(after.covariance * moved);
 }
 
+/// Mean evidence of the held-out rows of a file for the term alone, if it is true.
+double evidence_of_term(const model::Measurement& rows, std::size_t file, const Eigen::VectorXd& term,
+                        const fit::NoiseModel& noise, double variance) {
+  const std::vector<std::size_t> check = check_observations(rows);
+  const Eigen::VectorXd change = in_units_of_noise(rows, check, term(check), noise, variance);
+  double sum = 0;
+  for (std::size_t i = 0; i < check.size(); ++i)
+    if (rows.file[rows.observations[check[i]].row] == file)
+      sum += std::pow(change[static_cast<Eigen::Index>(i)], 2) / 2;
+  return sum;
+}
+
 }  // namespace
 
-bool is_contradicted_by_a_file(const Proof& proof, const ProofThresholds& thresholds,
-                               const model::Measurement& rows, const fit::FitResult& before,
-                               const fit::FitResult& after, const fit::NoiseModel& noise, double variance) {
-  return std::any_of(proof.files.begin(), proof.files.end(), [&](const Proof::OfFile& one) {
-    if (one.evidence >= -thresholds.contradiction) return false;
+std::optional<Proof::OfFile> contradicting_file(const Proof& proof, const ProofThresholds& thresholds,
+                                                const model::Measurement& rows, const fit::FitResult& before,
+                                                const fit::FitResult& after, const Eigen::VectorXd& term,
+                                                const fit::NoiseModel& noise, double variance) {
+  for (const Proof::OfFile& one : proof.files) {
+    if (one.evidence >= -thresholds.contradiction) continue;
+    if (evidence_of_term(rows, one.file, term, noise, variance) < -kEvidenceOfNothing) continue;
     const double std =
         std::sqrt(2 * one.expected + variance_by_parameters(rows, one.file, before, after, noise, variance));
-    return one.evidence < one.expected - thresholds.loss_sigmas * std;
-  });
+    if (one.evidence < one.expected - thresholds.loss_sigmas * std) return one;
+  }
+  return std::nullopt;
 }
 
 Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,
@@ -94,6 +109,25 @@ Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd&
       proof.files.push_back(own);
     }
   return proof;
+}
+
+std::vector<CheckOfFile> checks_of_files(const model::Measurement& rows, const Eigen::VectorXd& residual) {
+  struct Sum {
+    double squares = 0, count = 0;
+  };
+  std::map<std::size_t, Sum> of_file;
+  for (const std::size_t i : check_observations(rows)) {
+    const model::Observation& one = rows.observations[i];
+    const double u = model::uncertainty_of(rows, one);
+    if (!(u > 0)) return {};
+    Sum& sum = of_file[rows.file[one.row]];
+    sum.squares += std::pow(residual[static_cast<Eigen::Index>(i)] / u, 2);
+    ++sum.count;
+  }
+  std::vector<CheckOfFile> list;
+  for (const auto& [file, sum] : of_file)
+    list.push_back({rows.files[file], std::sqrt(sum.squares / sum.count)});
+  return list.size() > 1 ? list : std::vector<CheckOfFile>{};
 }
 
 }  // namespace vernier::diagnose

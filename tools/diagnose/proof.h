@@ -2,9 +2,11 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "tools/diagnose/propose/thresholds.h"
+#include "tools/diagnose/types.h"
 #include "tools/fit/noise/noise.h"
 #include "tools/fit/types.h"
 #include "tools/model/measurement.h"
@@ -31,12 +33,17 @@ struct Proof {
   double asked(const ProofThresholds& thresholds) const;
 };
 
-/// Returns true if the held-out rows of one file contradict the step: their evidence against it is very
-/// strong, and less than one true step in a hundred has such an evidence. `before`, `after`: fits without and
-/// with the step; `rows`: bound to the machine of `after`; `noise`, `variance`: as for proof_on_check_rows().
-bool is_contradicted_by_a_file(const Proof& proof, const ProofThresholds& thresholds,
-                               const model::Measurement& rows, const fit::FitResult& before,
-                               const fit::FitResult& after, const fit::NoiseModel& noise, double variance);
+/// Returns the file whose held-out rows contradict the step: their evidence against it is very strong, and
+/// less than one true step in a hundred has such an evidence. nullopt: no file contradicts the step.
+/// `before`, `after`: fits without and with the step; `rows`: bound to the machine of `after`; `term`: what
+/// the term of the effect contributes to the prediction of each reading, mm or deg. A file whose held-out
+/// rows the term hardly changes (a tracker whose rows state no approach direction, for a backlash) does not
+/// contradict the step: its residual changes only because the fit distributes other errors differently.
+/// `noise`, `variance`: as for proof_on_check_rows().
+std::optional<Proof::OfFile> contradicting_file(const Proof& proof, const ProofThresholds& thresholds,
+                                                const model::Measurement& rows, const fit::FitResult& before,
+                                                const fit::FitResult& after, const Eigen::VectorXd& term,
+                                                const fit::NoiseModel& noise, double variance);
 
 /// Evaluates the check rows with the model before and after one step. `before`, `after`: residuals (measured
 /// - model) of all observations with the two models; `noise`: correlation of the errors of the readings.
@@ -44,5 +51,9 @@ bool is_contradicted_by_a_file(const Proof& proof, const ProofThresholds& thresh
 /// 1 if the stated u is too small; without u it is in mm^2.
 Proof proof_on_check_rows(const model::Measurement& rows, const Eigen::VectorXd& before,
                           const Eigen::VectorXd& after, const fit::NoiseModel& noise, double variance);
+
+/// Returns the rms of residual / u over the check rows of each file. Empty if fewer than two files have check
+/// rows, or if a check row has no u. `residual`: of all observations of `rows`, mm or deg.
+std::vector<CheckOfFile> checks_of_files(const model::Measurement& rows, const Eigen::VectorXd& residual);
 
 }  // namespace vernier::diagnose

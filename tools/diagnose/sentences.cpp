@@ -41,6 +41,21 @@ std::string where_left(const residual::FailurePicture& left) {
   return text;
 }
 
+namespace {
+
+/// The figures that decide if an rms in um increases: it consists mostly of the least accurate instrument.
+std::string of_files(const LadderStep& first, const LadderStep& last) {
+  if (first.check_files.size() != last.check_files.size()) return {};
+  std::string list;
+  for (std::size_t i = 0; i < first.check_files.size(); ++i)
+    list += fmt::format("{}{} {:.3g} to {:.3g}", list.empty() ? "" : ", ", first.check_files[i].file,
+                        first.check_files[i].rms, last.check_files[i].rms);
+  if (list.empty()) return {};
+  return ". The decision weights each check row by 1/u^2: rms of residual / u in each file: " + list;
+}
+
+}  // namespace
+
 std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_t accepted) {
   std::string way, worse;
   const bool lengths = steps[0].check_rms_um.has_value();
@@ -53,7 +68,7 @@ std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_
   std::string text =
       fmt::format(" With {} effect{} the rms of the check rows (held-out rows) changes from {} {}", accepted,
                   accepted == 1 ? "" : "s", way, lengths ? "um" : "urad");
-  if (!worse.empty()) text += "; the rms increases with " + worse;
+  if (!worse.empty()) text += "; the rms increases with " + worse + of_files(steps.front(), steps.back());
   return text + ".";
 }
 

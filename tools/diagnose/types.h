@@ -72,12 +72,19 @@ struct ExcludedRows {
                                                        // rows
 };
 
+/// Check rows of one measurement file beside a model.
+struct CheckOfFile {
+  std::string file;
+  double rms = 0;  // rms of residual / u
+};
+
 struct LadderStep {
   std::string effect, add, label;                  // effect of this step; empty for the model as given
   std::string said;                                // description of the effect for people: "Z carriage: lag"
   std::string text;                                // text of the fitted machine file
   std::optional<double> rms_um, check_rms_um;      // rms residual of length readings
   std::optional<double> rms_urad, check_rms_urad;  // rms residual of rotation readings
+  std::vector<CheckOfFile> check_files;            // empty if fewer than two files have check rows with u
   double chi_square_per_freedom = 0;
   /// True if held-out rows confirm the effect of this step. The evidence is the natural logarithm of a
   /// likelihood ratio. The check rows are used for this confirmation if the effect changes them enough. If

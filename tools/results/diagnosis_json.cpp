@@ -49,6 +49,14 @@ void add_place(Json& json, const effects::Candidate& candidate, const model::Mac
   json["dof"] = one ? Json(effects::dof_name(machine, place)) : Json(nullptr);
 }
 
+/// rms of residual / u over the check rows of each file.
+Json check_files_json(const diagnose::LadderStep& step) {
+  Json list = Json::array();
+  for (const diagnose::CheckOfFile& one : step.check_files)
+    list.push_back({{"file", one.file}, {"rms_over_u", one.rms}});
+  return list;
+}
+
 Json candidate_json(const diagnose::CandidateFinding& finding, const model::Machine& machine) {
   const effects::Choice& choice = finding.candidate.choice;
   Json json;
@@ -209,6 +217,7 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
                               {"check_rms_um", text::or_null(step.check_rms_um)},
                               {"rms_urad", text::or_null(step.rms_urad)},
                               {"check_rms_urad", text::or_null(step.check_rms_urad)},
+                              {"check_files", check_files_json(step)},
                               {"confirmed", step.confirmed ? Json(*step.confirmed) : Json(nullptr)},
                               {"evidence", text::or_null(step.evidence)},
                               {"certain", given ? Json(nullptr) : Json(step.certain)},

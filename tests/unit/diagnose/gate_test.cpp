@@ -9,6 +9,7 @@
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/proof.h"
 #include "tools/diagnose/refit.h"
+#include "tools/diagnose/sentences.h"
 #include "tools/fit/fit.h"
 #include "tools/model/machine_reader.h"
 
@@ -88,10 +89,44 @@ TEST(Gate, TheCheckRowsOfOneFileAloneContradictAStep) {
   without.residual = before;
   with.residual = after;
   const ProofThresholds limits;
-  EXPECT_TRUE(is_contradicted_by_a_file(two, limits, rows, without, with, {}, 1));
+  const Eigen::VectorXd term = before - after;
+  const auto contradicted = contradicting_file(two, limits, rows, without, with, term, {}, 1);
+  ASSERT_TRUE(contradicted);
+  EXPECT_EQ(contradicted->file, 1U);
+  // A backlash, and a tracker whose rows state no direction: other parameters changed its residual.
+  Eigen::VectorXd elsewhere = term;
+  elsewhere[static_cast<Eigen::Index>(last)] = 0;
+  EXPECT_FALSE(contradicting_file(two, limits, rows, without, with, elsewhere, {}, 1));
   // With parameters that are as uncertain, this row is no surprise.
   with.covariance = Eigen::MatrixXd::Constant(with.covariance.rows(), with.covariance.cols(), 10 * u * u);
-  EXPECT_FALSE(is_contradicted_by_a_file(two, limits, rows, without, with, {}, 1));
+  EXPECT_FALSE(contradicting_file(two, limits, rows, without, with, term, {}, 1));
+}
+
+TEST(Gate, CheckRowsOfEachFileAreCountedInUnitsOfTheirU) {
+  Measurement rows = parse_measurement(survey({0.001, 0.001}), "m.csv", parse_machine(kAxis, "m.xml"));
+  const auto count = static_cast<Eigen::Index>(rows.observations.size());
+  Eigen::VectorXd residual = Eigen::VectorXd::Constant(count, 0.002);
+  EXPECT_TRUE(checks_of_files(rows, residual).empty()) << "one file has no other beside it";
+  rows.files.push_back("tracker.csv");
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < rows.observations.size(); ++i)
+    if (rows.check[rows.observations[i].row] != 0) last = i;
+  rows.file[rows.observations[last].row] = 1;
+  residual[static_cast<Eigen::Index>(last)] = 0.006;
+  const double u = uncertainty_of(rows, rows.observations[last]);
+  const std::vector<CheckOfFile> files = checks_of_files(rows, residual);
+  ASSERT_EQ(files.size(), 2U);
+  EXPECT_NEAR(files[0].rms, 0.002 / u, 1e-9);
+  EXPECT_EQ(files[1].file, "tracker.csv");
+  EXPECT_NEAR(files[1].rms, 0.006 / u, 1e-9);
+  LadderStep first, last_step;
+  first.check_rms_um = 3.99, last_step.check_rms_um = 4.31;
+  first.check_files = {{"z.csv", 3.07}, {"tracker.csv", 1.12}};
+  last_step.said = "Z carriage: backlash";
+  last_step.check_files = {{"z.csv", 0.76}, {"tracker.csv", 1.23}};
+  EXPECT_NE(check_rows_in_words({first, last_step}, 1).find("in each file: z.csv 3.07 to 0.76, tracker.csv"),
+            std::string::npos)
+      << check_rows_in_words({first, last_step}, 1);
 }
 
 TEST(Gate, AStepThatCheckRowsBearOutIsConfirmedByThem) {

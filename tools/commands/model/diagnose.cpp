@@ -106,7 +106,8 @@ void print_next_step(std::FILE* out, const diagnose::Diagnosis& d) {
     fmt::print(
         out,
         "next: to try the first candidate, vernier add '{}' MACHINE -o NEW, then vernier fit NEW MEAS -o "
-        "FITTED; keep it only if the check rows improve\n",
+        "FITTED; keep it only if the residuals of the check rows divided by their standard uncertainty "
+        "decrease (vernier fit prints their rms)\n",
         add);
 }
 
