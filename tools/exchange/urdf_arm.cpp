@@ -9,12 +9,14 @@
 #include <numbers>
 #include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/chain/evaluate.h"
+#include "tools/model/fit_record.h"
 #include "tools/text/error.h"
 
 namespace vernier::exchange {
@@ -53,6 +55,8 @@ class Arm {
     for (const std::size_t axis : order()) joints_.push_back(joint_of(axis));
     place_points();
     at_reference_ = poses({reference_}).front();
+    fit_joints();
+    place_points();
   }
 
   UrdfFile file() const {
@@ -64,8 +68,10 @@ class Arm {
   }
 
  private:
-  static constexpr unsigned long kSeed = 1;
+  static constexpr unsigned long kSeed = 1, kSeedOfFit = 2;
   static constexpr std::size_t kPoses = 1000;
+  static constexpr double kLever_mm =
+      100;  // a rotation of the tool counts as the motion of a point so far away
 
   model::States states(const std::vector<Joints>& joints) const {
     model::States all = model::select_states(at_, std::vector<std::size_t>(joints.size(), 0));
@@ -179,26 +185,114 @@ class Arm {
     return pose * at_reference_;
   }
 
-  void measure(UrdfFile& file) const {
-    std::mt19937_64 random(kSeed);
+  /// Range of an axis in which the arm is fitted and tested: the measured range, otherwise that of the axis.
+  std::pair<double, double> range_of(std::size_t axis) const {
+    const model::Axis& limits = machine_.axes[axis];
+    if (machine_.fitted)
+      for (const model::FitRecord::Range& range : machine_.fitted->measured)
+        if (range.name == limits.name) return {range.min, range.max};
+    return {limits.min.value_or(-180), limits.max.value_or(180)};
+  }
+
+  std::vector<Joints> random_poses(unsigned long seed) const {
+    std::mt19937_64 random(seed);
     std::vector<Joints> all;
     for (std::size_t i = 0; i < kPoses; ++i) {
       Joints one;
       for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-        const model::Axis& limits = machine_.axes[axis];
-        std::uniform_real_distribution<double> position(limits.min.value_or(-180), limits.max.value_or(180));
-        one.push_back(position(random));
+        const auto [low, high] = range_of(axis);
+        one.push_back(low < high ? std::uniform_real_distribution<double>(low, high)(random) : low);
       }
       all.push_back(one);
     }
+    return all;
+  }
+
+  /// Differences of the tool point, and of its rotation at the lever: six values a pose, mm.
+  Eigen::VectorXd differences(const std::vector<Joints>& all, const std::vector<Isometry3d>& real) const {
+    Eigen::VectorXd list(6 * static_cast<Index>(all.size()));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Isometry3d held = ideal(all[i]);
+      const Eigen::AngleAxisd turn(Eigen::Matrix3d(real[i].linear() * held.linear().transpose()));
+      list.segment<3>(6 * static_cast<Index>(i)) = real[i].translation() - held.translation();
+      list.segment<3>(6 * static_cast<Index>(i) + 3) = kLever_mm * turn.angle() * turn.axis();
+    }
+    return list;
+  }
+
+  /// Moves a joint by four values, or the tool by six (mm; a rotation at the lever, mm).
+  void move(std::size_t joint, Index value, double by) {
+    if (joint == joints_.size()) {
+      if (value < 3)
+        at_reference_.translation()[value] += by;
+      else
+        at_reference_.linear() =
+            Eigen::AngleAxisd(by / kLever_mm, Vector3d::Unit(value - 3)).toRotationMatrix() *
+            at_reference_.linear();
+      return;
+    }
+    Joint& one = joints_[joint];
+    const Vector3d across = one.direction.unitOrthogonal();
+    const Vector3d side = value % 2 == 0 ? across : one.direction.cross(across);
+    if (value < 2)
+      one.direction = (one.direction + by / kLever_mm * side).normalized();
+    else
+      one.point += by * side;
+  }
+
+  /// Gauss-Newton steps from the joints that were found one by one. An arm of ideal joints is left as found.
+  void fit_joints() {
+    constexpr int kMostSteps = 10;
+    constexpr double kExact_mm = 1e-6, kStep_mm = 1e-3, kSettled = 1e-6;
+    const std::vector<Joints> all = random_poses(kSeedOfFit);
     const std::vector<Isometry3d> real = poses(all);
+    Eigen::VectorXd rest = differences(all, real);
+    const double exact = kExact_mm * std::sqrt(static_cast<double>(rest.size()));
+    for (int step = 0; step < kMostSteps && rest.norm() > exact; ++step) {
+      std::vector<std::pair<std::size_t, Index>> values;
+      for (std::size_t joint = 0; joint <= joints_.size(); ++joint)
+        for (Index k = 0; k < (joint == joints_.size() ? 6 : 4); ++k) values.emplace_back(joint, k);
+      const std::vector<Joint> joints = joints_;
+      const Isometry3d tool = at_reference_;
+      Eigen::MatrixXd slope(rest.size(), static_cast<Index>(values.size()));
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        move(values[k].first, values[k].second, kStep_mm);
+        slope.col(static_cast<Index>(k)) = (rest - differences(all, real)) / kStep_mm;
+        joints_ = joints, at_reference_ = tool;
+      }
+      // Least norm: the point of a prismatic joint, or a joint that did not move, changes nothing.
+      const Eigen::VectorXd change = maths::least_norm(slope, rest);
+      for (std::size_t k = 0; k < values.size(); ++k)
+        move(values[k].first, values[k].second, change[static_cast<Index>(k)]);
+      const Eigen::VectorXd next = differences(all, real);
+      const double gain = 1 - next.norm() / rest.norm();
+      if (!(gain > 0)) {
+        joints_ = joints, at_reference_ = tool;
+        return;
+      }
+      rest = next;
+      if (gain < kSettled) return;
+    }
+  }
+
+  void measure(UrdfFile& file) const {
+    const std::vector<Joints> all = random_poses(kSeed);
+    const std::vector<Isometry3d> real = poses(all);
+    const model::Poses nominal = model::forward(model::nominal_machine(machine_), states(all));
+    double sum = 0, sum_nominal = 0;
     for (std::size_t i = 0; i < kPoses; ++i) {
       const Isometry3d held = ideal(all[i]);
-      file.worst_um = std::max(file.worst_um, 1000 * (held.translation() - real[i].translation()).norm());
+      const double off_mm = (held.translation() - real[i].translation()).norm();
+      sum += off_mm * off_mm;
+      sum_nominal += (nominal.position.col(static_cast<Index>(i)) - real[i].translation()).squaredNorm();
+      file.worst_um = std::max(file.worst_um, maths::kUmPerMm * off_mm);
       const Vector3d tilt = held.rotation().col(2).cross(real[i].rotation().col(2));
       file.worst_urad = std::max(file.worst_urad, 1e6 * tilt.norm());
     }
+    file.rms_um = maths::kUmPerMm * std::sqrt(sum / kPoses);
+    file.rms_nominal_um = maths::kUmPerMm * std::sqrt(sum_nominal / kPoses);
     file.positions = kPoses;
+    file.measured = machine_.fitted && !machine_.fitted->measured.empty();
   }
 
   static std::string triple(const Vector3d& v) {

@@ -15,18 +15,23 @@ namespace vernier::exchange {
 struct UrdfFile {
   std::string text;
   double worst_um = 0, worst_urad = 0;  // largest difference of the tool point, and of the tool direction
-  std::size_t positions = 0;            // number of positions at which the difference was computed
+  double rms_um = 0;                    // rms difference of the tool point: what URDF leaves out
+  double rms_nominal_um = 0;            // rms difference of the nominal machine from the machine
+  std::size_t positions = 0;            // number of positions at which the differences were computed
+  bool measured = false;                // true if these positions are in the measured ranges of the fit
   std::vector<UndeterminedJoint> undetermined;  // joints that the readings of the fit do not determine
 };
 
-/// Returns the URDF model of an arm with one joint for each axis. Origin and axis of each joint are those
-/// about which (or along which) the fitted chain really moves. The origin and axis of one joint are computed
-/// with the other joints at zero, or in the middle of a range that does not contain zero. The links are
-/// base_link, one link for each axis, and tool. With the joints at these positions, each frame of the URDF
-/// model is parallel to the base. URDF has ideal joints. Errors that depend on joints, inputs or direction
-/// therefore remain in a URDF model. The member worst_um states the largest remaining error of the URDF
-/// model at 1000 poses within the ranges (fixed seed). `at` (one state): values of inputs and motion. Throws
-/// InputError if an axis moves the workpiece, or if an axis moves no transform.
+/// Returns the URDF model of an arm with one joint for each axis. The links are base_link, one link for each
+/// axis, and tool. With the joints at zero, or in the middle of a range that does not contain zero, each
+/// frame of the URDF model is parallel to the base. URDF has ideal joints. The origins and axes of the joints
+/// and the tool are therefore fitted to the machine: least squares of the tool point and of the rotation of
+/// the tool (with a lever of 100 mm), at 1000 poses in the measured ranges of the axes (without a fit: in the
+/// ranges of the axes). The start of the fit are the origins and axes about which (or along which) the chain
+/// moves, one joint after another. Errors that depend on joints, inputs or direction then remain only in
+/// part. The differences of the result are those at 1000 other poses in the same ranges (fixed seeds). `at`
+/// (one state): values of inputs and motion. Throws InputError if an axis moves the workpiece, or if an axis
+/// moves no transform.
 UrdfFile urdf_arm(const model::Machine& machine, const model::States& at);
 
 }  // namespace vernier::exchange

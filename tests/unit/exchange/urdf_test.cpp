@@ -124,6 +124,24 @@ TEST(Urdf, StatesWhatIdealJointsLeave) {
   EXPECT_LT(file.worst_um, 60);
 }
 
+// The joints at the reference pose alone left more than the joints of a machine without the compliance.
+TEST(Urdf, JointsAreFittedToTheMachineInTheMeasuredRanges) {
+  Machine machine = parse_machine(arm("k*sin(J2)"), "arm.xml");
+  const exchange::UrdfFile whole = exchange::urdf_arm(machine, make_states(1, machine));
+  // A constant offset alone leaves the standard deviation of 50 um sin(J2) over 20 to 140 deg: 8.8 um. The
+  // joints at the reference pose have the value at 80 deg: at least 12 um.
+  EXPECT_LT(whole.rms_um, 8.9);
+  EXPECT_GT(whole.rms_nominal_um, 1000);  // 0.4 deg over 0.5 m
+  EXPECT_FALSE(whole.measured);
+  auto fitted = std::make_shared<FitRecord>();
+  fitted->measured = {{"J1", -90, 90}, {"J2", 60, 80}, {"S", 0, 300}, {"J4", -90, 90}};
+  machine.fitted = fitted;
+  const exchange::UrdfFile part = exchange::urdf_arm(machine, make_states(1, machine));
+  EXPECT_TRUE(part.measured);
+  // 50 um sin(J2) over 60 to 80 deg: a standard deviation of 1.8 um.
+  EXPECT_LT(part.rms_um, 1.9);
+}
+
 TEST(Urdf, IsForArmsOnly) {
   const std::string table =
       R"(<machine name="m"><variables><static/><machineaxes><X min="0" max="9"/></machineaxes></variables>

@@ -19,10 +19,13 @@ void export_urdf(const ExchangeArguments& arguments) {
   std::vector<exchange::LeftOut> left;
   if (file.worst_um > exchange::kNothing_um)
     left.push_back({"effect on the tool point of errors that depend on the joint angles", file.worst_um});
-  fmt::print(human_stream(arguments.json),
-             "difference from the machine file at {} poses: tool point up to {:.3g} um, tool direction up to "
-             "{:.3g} urad\n",
-             file.positions, file.worst_um, file.worst_urad);
+  fmt::print(
+      human_stream(arguments.json),
+      "difference from the machine file at {} poses in the {} ranges of the axes: tool point rms {:.3g} um, "
+      "up to {:.3g} um, tool direction up to {:.3g} urad; without the calibration (the nominal arm): rms "
+      "{:.3g} um\n",
+      file.positions, file.measured ? "measured" : "declared", file.rms_um, file.worst_um, file.worst_urad,
+      file.rms_nominal_um);
   Json undetermined = Json::array();
   for (const exchange::UndeterminedJoint& one : file.undetermined)
     undetermined.push_back({{"joint", one.joint}, {"parameters", one.parameters}});
@@ -33,7 +36,12 @@ void export_urdf(const ExchangeArguments& arguments) {
                exchange::joints_text(file.undetermined));
   finish(machine, arguments, "urdf", left, files, {}, true,
          {{"errors",
-           {{"positions", file.positions}, {"after_um", file.worst_um}, {"after_urad", file.worst_urad}}},
+           {{"positions", file.positions},
+            {"in_measured_ranges", file.measured},
+            {"rms_before_um", file.rms_nominal_um},
+            {"rms_after_um", file.rms_um},
+            {"after_um", file.worst_um},
+            {"after_urad", file.worst_urad}}},
           {"undetermined_joints", undetermined}});
 }
 
@@ -44,10 +52,11 @@ void add_robot_exports(CLI::App* parent) {
   CLI::App* command = add_export(parent, "urdf", "URDF: the calibrated joints of an arm (ROS)", kWritesFolder,
                                  "directory", arguments);
   command->footer(
-      "The command writes robot.urdf with a joint for each axis, at the origin and axis about which the "
-      "fitted chain moves. It\n"
-      "prints the errors that ideal joints cannot express: compliance, cyclic errors, reversal and thermal "
-      "errors.");
+      "The command writes robot.urdf with a joint for each axis. The origins and axes of the joints are "
+      "fitted to the machine\n"
+      "file in the measured ranges of the axes. The command prints the part of compliance, cyclic errors, "
+      "reversal and thermal\n"
+      "errors that ideal joints cannot express.");
   command->callback([arguments] { export_urdf(*arguments); });
 }
 
