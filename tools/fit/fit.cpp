@@ -216,13 +216,13 @@ bool find_disturbance(const FitResult& result, const model::Measurement& rows, c
   for (const NoiseStep& step : result.noise.steps) {
     const auto kind = static_cast<model::ObservationKind>(step.kind);
     if (model::is_rotation(kind)) continue;
-    offer(1e-3 * std::abs(step.height) * unit.um,
-          fmt::format("a step of {:.3g} um in {} from {} on", std::abs(step.height) * unit.um,
-                      format::name_of(static_cast<format::ReadingKind>(step.kind)),
-                      step.row < all.line.size()
-                          ? fmt::format("row {} ({}:{})", step.row + 1, all.files[all.file[step.row]],
-                                        all.line[step.row])
-                          : fmt::format("row {}", step.row + 1)));
+    const double size_um = std::abs(step.height) * (step.unit > 0 ? step.unit : unit.um);
+    offer(1e-3 * size_um, fmt::format("a step of {:.3g} um in {} from {} on", size_um,
+                                      format::name_of(static_cast<format::ReadingKind>(step.kind)),
+                                      step.row < all.line.size()
+                                          ? fmt::format("row {} ({}:{})", step.row + 1,
+                                                        all.files[all.file[step.row]], all.line[step.row])
+                                          : fmt::format("row {}", step.row + 1)));
   }
   // A drift of one kind alone is more often an error of the model in one direction.
   const double drift = result.noise.drifts == 0 ? result.noise.drift * unit.of_all() : 0;

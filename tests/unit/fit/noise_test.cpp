@@ -235,6 +235,11 @@ TEST(NoiseModel, AStepOfTheInstrumentIsFoundWhereItIs) {
   EXPECT_NEAR(static_cast<double>(found.steps[0].row), 180, 5);
   EXPECT_NEAR(found.steps[0].height, 2, 4 * found.steps[0].std);
   EXPECT_EQ(found.drift, 0);
+  // Its size is in the u of its own row, not in the rms of u over files with other instruments.
+  const double u_um = 1e3 * m.uncertainty[static_cast<Eigen::Index>(found.steps[0].row)];
+  EXPECT_DOUBLE_EQ(found.steps[0].unit, u_um);
+  const NoiseUnit of_all{8 * u_um, 1, false};
+  EXPECT_NEAR(std::stod(step_in_words(found.steps[0], of_all)), found.steps[0].height * u_um, 0.01 * u_um);
 }
 
 // Three of six before, and the rest a drift.

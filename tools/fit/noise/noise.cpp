@@ -130,8 +130,8 @@ Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& mo
 
 std::string step_in_words(const NoiseStep& step, const NoiseUnit& unit) {
   const bool rotation = model::is_rotation(static_cast<model::ObservationKind>(step.kind));
-  return fmt::format("{:.3g} +- {:.2g} {} in {}", step.height * unit.of(rotation),
-                     step.std * unit.of(rotation), unit_name(rotation),
+  const double size = step.unit > 0 ? step.unit : unit.of(rotation);
+  return fmt::format("{:.3g} +- {:.2g} {} in {}", step.height * size, step.std * size, unit_name(rotation),
                      format::name_of(static_cast<format::ReadingKind>(step.kind)));
 }
 

@@ -18,6 +18,7 @@ struct NoiseStep {
   std::size_t row = 0;
   double height = 0, std = 0;  // in weighted readings (readings / u)
   int component = -1;          // 0, 1, 2: component of the shift along the normal; -1: no set-up
+  double unit = 0;             // um or arcsec of a weighted reading at the row of the step; 0: not known
   bool of_set_up() const { return component >= 0; }
   bool operator==(const NoiseStep& other) const {
     return kind == other.kind && row == other.row && component == other.component;

@@ -160,7 +160,9 @@ std::vector<std::pair<NoiseStep, double>> steps_of(const NoiseSeries& series, co
     if (i < least_rows || i + least_rows > series.reading.size() || near_set_up[i] != 0) continue;
     const double own = count - along.squaredNorm();
     if (own < limits.own_of_step * count) continue;
-    list.emplace_back(NoiseStep{series.kind, series.row[i], sum / own, 1 / std::sqrt(own)}, sum * sum / own);
+    NoiseStep step{series.kind, series.row[i], sum / own, 1 / std::sqrt(own)};
+    step.unit = series.unit[i];
+    list.emplace_back(step, sum * sum / own);
   }
   return list;
 }

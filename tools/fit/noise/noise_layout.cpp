@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "tools/maths/factors.h"
 #include "tools/maths/median.h"
 
 namespace vernier::fit {
@@ -139,6 +140,9 @@ NoiseLayout noise_layout(const model::Measurement& measurement, const std::vecto
     series.reading.push_back(static_cast<Eigen::Index>(i));
     series.kind = static_cast<int>(o.kind);
     series.row.push_back(o.row);
+    const double u = model::uncertainty_of(measurement, o);
+    series.unit.push_back((u > 0 ? u : 1) *
+                          (model::is_rotation(o.kind) ? maths::kArcsecPerDeg : maths::kUmPerMm));
     series.time.push_back(layout.in_time ? states.time[static_cast<Eigen::Index>(o.row)]
                                          : static_cast<double>(o.row));
     series.setup.push_back(static_cast<int>(states.of(states.setup, o.row)));

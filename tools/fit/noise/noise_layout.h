@@ -18,6 +18,7 @@ struct NoiseSeries {
                              // decreases within one clock.
   int kind = 0;              // kind of reading (ObservationKind)
   std::vector<std::size_t> row;
+  std::vector<double> unit;  // um or arcsec of a weighted reading: u of the reading; 1 mm or 1 deg without u
   std::vector<int> setup, clock, pose;  // one index for each reading; a pose is a group of successive rows at
                                         // one position
   std::vector<Eigen::Vector3d> normal;  // normals of the readings along a normal
