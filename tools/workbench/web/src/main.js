@@ -40,6 +40,8 @@ function show(id) {
   emit('view');
   views.get(name).view.show();
   redrawAll();
+  // A hidden chart has no width: the window or the colours may have changed since it was drawn.
+  redrawCharts();
 }
 
 /** The machine and the measurements that everything is about. */
