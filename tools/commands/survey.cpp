@@ -5,7 +5,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/effects/roles.h"
-#include "tools/effects/survey.h"
+#include "tools/effects/survey/complete_survey.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/rebind.h"
 #include "tools/simulate/corrected.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/fit/file_noise.h"
+#include "tools/fit/files/file_noise.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 

@@ -11,7 +11,7 @@
 #include "tools/diagnose/diagnosis.h"
 #include "tools/effects/roles.h"
 #include "tools/fit/coverage/domain.h"
-#include "tools/fit/file_noise.h"
+#include "tools/fit/files/file_noise.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/format/columns.h"

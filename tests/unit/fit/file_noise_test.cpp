@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Readings without u beside readings with u: their noise is estimated, not taken as 1 mm.
-#include "tools/fit/file_noise.h"
+#include "tools/fit/files/file_noise.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/model/plan_kinds.h"
 #include "tools/effects/catalogue.h"
-#include "tools/fit/file_noise.h"
+#include "tools/fit/files/file_noise.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/plan/check_plan.h"

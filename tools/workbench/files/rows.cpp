@@ -7,8 +7,8 @@
 
 #include "tools/effects/add_string.h"
 #include "tools/effects/fitted_effect.h"
-#include "tools/effects/survey.h"
-#include "tools/fit/file_noise.h"
+#include "tools/effects/survey/complete_survey.h"
+#include "tools/fit/files/file_noise.h"
 #include "tools/fit/fit.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/set_up.h"

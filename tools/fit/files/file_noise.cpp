@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fit/file_noise.h"
+#include "tools/fit/files/file_noise.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 #include "tools/fit/fit.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/set_up.h"
+#include "tools/format/columns.h"
 #include "tools/maths/factors.h"
 #include "tools/maths/median.h"
 #include "tools/text/error.h"
@@ -20,16 +21,16 @@ namespace {
 constexpr double kLeastFreedom = 5;
 /// Residuals beyond this many standard deviations count as this many. Of normal residuals it lowers the
 /// estimate by 0.3 %.
-constexpr double kFar = 3;
+constexpr double kFarResidual = 3;
 /// Change of an estimate below which the iteration ends: a tenth of its own uncertainty with 1000 readings.
-constexpr double kSettled = 0.02;
+constexpr double kSettledEstimate = 0.02;
 constexpr int kMostFits = 12;
 /// Change of an estimate by which a machine with an additional effect counts as another model of the noise:
 /// the weights of the file then change by 20 %.
 constexpr double kOtherModel = 0.1;
 /// Least estimate, mm or deg: below the resolution of any instrument, and not 0 for readings without
 /// residual.
-constexpr double kLeast = 1e-7;
+constexpr double kLeastEstimate = 1e-7;
 
 bool is_of(const model::Measurement& rows, const FileNoise& noise, const model::Observation& one) {
   return rows.file[one.row] == noise.file && model::is_rotation(one.kind) == noise.rotations;
@@ -56,7 +57,7 @@ std::vector<FileNoise> without_u(const model::Measurement& rows) {
   return any ? list : std::vector<FileNoise>{};
 }
 
-void write(model::Measurement& rows, const FileNoise& noise) {
+void write_estimate(model::Measurement& rows, const FileNoise& noise) {
   if (noise.rotations && rows.angle_uncertainty.size() == 0)
     rows.angle_uncertainty = model::Column::Zero(static_cast<Eigen::Index>(rows.rows()));
   model::Column& column = noise.rotations ? rows.angle_uncertainty : rows.uncertainty;
@@ -82,7 +83,7 @@ std::vector<double> residuals_of(const model::Measurement& rows, const FileNoise
 }
 
 double sum_of_squares(const std::vector<double>& residuals) {
-  const double far = kFar * maths::robust_spread(residuals);
+  const double far = kFarResidual * maths::robust_spread(residuals);
   double sum = 0;
   // More than half of the residuals can be 0.
   for (const double one : residuals) sum += far > 0 ? std::min(one * one, far * far) : one * one;
@@ -96,7 +97,7 @@ double first_value(const model::Machine& machine, const model::Measurement& rows
   FileNoise alone = noise;
   alone.file = own.file.front();
   const std::vector<double> left = residuals_of(own, alone, residuals(set_up(machine, own), own));
-  return std::max(kLeast, std::sqrt(sum_of_squares(left) / static_cast<double>(left.size())));
+  return std::max(kLeastEstimate, std::sqrt(sum_of_squares(left) / static_cast<double>(left.size())));
 }
 
 /// Values of touched objects that the fit estimates, shared among the readings that touch one.
@@ -121,21 +122,28 @@ bool take_repeats(const model::Measurement& rows, FileNoise& noise) {
   return true;
 }
 
-[[noreturn]] void refuse(const FileNoise& noise, std::size_t readings) {
+const char* readings_name(const FileNoise& noise) { return noise.rotations ? "rotations" : "lengths"; }
+const char* column_name(const FileNoise& noise) {
+  return noise.rotations ? format::columns::kAngleUncertainty : format::columns::kUncertainty;
+}
+const char* unit_name_of(const FileNoise& noise) { return noise.rotations ? "arcsec" : "um"; }
+
+[[noreturn]] void refuse_few_readings(const FileNoise& noise, std::size_t readings) {
   throw text::InputError(fmt::format(
       "{}: the {} of this file have no {}, and other readings of the survey have one. The {} reading{} of "
       "the "
       "file leave {:.2g} degrees of freedom beside the model: too few to estimate the noise ({} are "
       "necessary). "
-      "State the standard uncertainty: a column {}",
-      noise.name, noise.rotations ? "rotations" : "lengths", noise.rotations ? "ua" : "u", readings,
-      readings == 1 ? "" : "s", std::max(0.0, noise.freedom), kLeastFreedom,
-      noise.rotations ? "ua[arcsec]"
-                      : "u[um], or <instrument u=\"...\"/> under <variables> of the machine file"));
+      "State the standard uncertainty: a column {}[{}]{}",
+      noise.name, readings_name(noise), column_name(noise), readings, readings == 1 ? "" : "s",
+      std::max(0.0, noise.freedom), kLeastFreedom, column_name(noise), unit_name_of(noise),
+      noise.rotations ? ""
+                      : fmt::format(", or <instrument {}=\"...\"/> under <variables> of the machine file",
+                                    column_name(noise))));
 }
 
 /// Estimates one file beside a fit. Returns the relative change.
-double estimate(const model::Measurement& rows, const FitResult& fit, FileNoise& noise) {
+double estimate_file(const model::Measurement& rows, const FitResult& fit, FileNoise& noise) {
   const std::vector<double> left = residuals_of(rows, noise, fit.residual);
   noise.freedom = 0;
   const double per_touch = estimated_values_per_touch(rows);
@@ -146,27 +154,29 @@ double estimate(const model::Measurement& rows, const FitResult& fit, FileNoise&
         fit.prediction_variance[static_cast<Eigen::Index>(i)] / (fit.variance_factor * noise.u * noise.u);
     noise.freedom += 1 - std::min(1.0, leverage) - (model::is_of_thing(one.kind) ? per_touch : 0);
   }
-  if (noise.freedom < kLeastFreedom) refuse(noise, left.size());
+  if (noise.freedom < kLeastFreedom) refuse_few_readings(noise, left.size());
   const double before = noise.u;
-  noise.u = std::max(kLeast, std::sqrt(sum_of_squares(left) / noise.freedom));
+  noise.u = std::max(kLeastEstimate, std::sqrt(sum_of_squares(left) / noise.freedom));
   noise.std = noise.u / std::sqrt(2 * noise.freedom);
   return std::abs(noise.u / before - 1);
 }
 
 /// Repeats fits and estimates until the estimates do not change. `rows` and `list` have first values.
-void iterate(const model::Machine& machine, model::Measurement& rows, std::vector<FileNoise>& list) {
+void iterate_estimates(const model::Machine& machine, model::Measurement& rows,
+                       std::vector<FileNoise>& list) {
   FitOptions independent;
   independent.noise = NoiseModel{};
   double change = 1;
-  for (int count = 0; count < kMostFits && change > kSettled; ++count) {
+  for (int count = 0; count < kMostFits && change > kSettledEstimate; ++count) {
     const FitResult result = fit(machine, rows, independent);
     change = 0;
     for (FileNoise& noise : list)
       if (noise.source != FileNoise::Source::kRepeats)
-        change = std::max(change, estimate(rows, result, noise));
-    for (const FileNoise& noise : list) write(rows, noise);
+        change = std::max(change, estimate_file(rows, result, noise));
+    for (const FileNoise& noise : list) write_estimate(rows, noise);
   }
-  for (FileNoise& noise : list) noise.open = noise.source != FileNoise::Source::kRepeats && change > kSettled;
+  for (FileNoise& noise : list)
+    noise.open = noise.source != FileNoise::Source::kRepeats && change > kSettledEstimate;
 }
 
 bool all_from_repeats(const std::vector<FileNoise>& list) {
@@ -184,12 +194,13 @@ std::string FileNoise::sentence() const {
   const double factor = rotations ? maths::kArcsecPerDeg : maths::kUmPerMm;
   return fmt::format(
       "{}: the {} of this file have no {}, and other readings have one. The estimate {} = {:.3g} {} +- "
-      "{:.2g} "
-      "is used{}, from {} ({:.0f} degrees of freedom). If you know the standard uncertainty, state it in a "
-      "column {}",
-      name, rotations ? "rotations" : "lengths", rotations ? "ua" : "u", rotations ? "ua" : "u", u * factor,
-      rotations ? "arcsec" : "um", std * factor, open ? " (it did not converge)" : "",
-      kSources[static_cast<std::size_t>(source)], freedom, rotations ? "ua[arcsec]" : "u[um]");
+      "{:.2g} is "
+      "used{}, from {} ({:.0f} degrees of freedom). If you know the standard uncertainty, state it in a "
+      "column "
+      "{}[{}]",
+      name, readings_name(*this), column_name(*this), column_name(*this), u * factor, unit_name_of(*this),
+      std * factor, open ? " (it did not converge)" : "", kSources[static_cast<std::size_t>(source)], freedom,
+      column_name(*this), unit_name_of(*this));
 }
 
 std::vector<FileNoise> estimate_file_noise(const model::Machine& machine, model::Measurement& rows) {
@@ -197,8 +208,8 @@ std::vector<FileNoise> estimate_file_noise(const model::Machine& machine, model:
   for (FileNoise& noise : list) {
     if (!take_repeats(rows, noise)) noise.u = first_value(machine, rows, noise);
   }
-  for (const FileNoise& noise : list) write(rows, noise);
-  if (!all_from_repeats(list)) iterate(machine, rows, list);
+  for (const FileNoise& noise : list) write_estimate(rows, noise);
+  if (!all_from_repeats(list)) iterate_estimates(machine, rows, list);
   return list;
 }
 
@@ -209,10 +220,10 @@ std::vector<FileNoise> file_noise_of_residual(model::Measurement& rows, const Ei
     const std::vector<double> left = residuals_of(rows, noise, residual);
     noise.source = FileNoise::Source::kGivenMachine;
     noise.freedom = static_cast<double>(left.size());
-    noise.u = std::max(kLeast, std::sqrt(sum_of_squares(left) / noise.freedom));
+    noise.u = std::max(kLeastEstimate, std::sqrt(sum_of_squares(left) / noise.freedom));
     noise.std = noise.u / std::sqrt(2 * noise.freedom);
   }
-  for (const FileNoise& noise : list) write(rows, noise);
+  for (const FileNoise& noise : list) write_estimate(rows, noise);
   return list;
 }
 
@@ -221,7 +232,7 @@ bool estimate_file_noise_again(const model::Machine& machine, model::Measurement
   if (all_from_repeats(noise)) return false;
   std::vector<FileNoise> next = noise;
   model::Measurement changed = rows;
-  iterate(machine, changed, next);
+  iterate_estimates(machine, changed, next);
   bool other = false;
   for (std::size_t i = 0; i < next.size(); ++i)
     other = other || std::abs(next[i].u / noise[i].u - 1) > kOtherModel;

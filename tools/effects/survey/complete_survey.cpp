@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/effects/survey.h"
+#include "tools/effects/survey/complete_survey.h"
 
 #include <utility>
 
