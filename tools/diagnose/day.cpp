@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/diagnose/shape.h"
+#include "tools/diagnose/doubts/shape.h"
 
 namespace vernier::diagnose {
 namespace {

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <set>
 
-#include "tools/diagnose/course.h"
 #include "tools/diagnose/day.h"
+#include "tools/diagnose/doubts/course.h"
+#include "tools/diagnose/doubts/shape.h"
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/pieces.h"
 #include "tools/diagnose/sentences.h"
-#include "tools/diagnose/shape.h"
 #include "tools/fit/findings.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/noise/noise.h"

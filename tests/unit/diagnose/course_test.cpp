@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A name states on what an error depends. These errors depend on another quantity, which no column records.
-#include "tools/diagnose/course.h"
+#include "tools/diagnose/doubts/course.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <set>
+#include <vector>
 
 #include "tools/diagnose/diagnosis.h"
 #include "tools/model/machine_reader.h"
@@ -231,6 +233,50 @@ TEST(Course, AShiftOfTheRowsOfOneSpeedIsNoContourLoss) {
       << of_one_speed.explanation;
   EXPECT_EQ(of_three.verdict, Verdict::kMissingEffect) << of_three.explanation;
   EXPECT_EQ(of_three.ladder.at(1).effect, "centrifugal");
+}
+
+/// Swings of Y about its middle, at one X, then swings of X: few poses beside the turning points. `error`: of
+/// a row of Y, mm; from its position and the number of the swing.
+Diagnosis diagnosis_of_swings(const std::function<double(double y, int swing)>& error) {
+  constexpr int kSwings = 14, kOfSwing = 6;
+  std::mt19937_64 random(kSeed + 3);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string text = "X[mm],Y[mm],dirX,dirY,x[mm],y[mm],u[um],run,role\n";
+  double y = 40, x = 60;
+  for (const bool of_y : {true, false})
+    for (int swing = 0; swing < kSwings; ++swing) {
+      const int sense = swing % 2 == 0 ? 1 : -1;
+      const double far = of_y ? 80 + 9 * swing : 150 + 5 * swing;
+      for (int k = 0; k < kOfSwing; ++k) {
+        const double at = sense * far * (2.0 * k / (kOfSwing - 1) - 1);
+        (of_y ? y : x) = std::round((of_y ? 200 : 250) + at);
+        const double off = error(y, of_y ? swing : kSwings - 1);
+        text += fmt::format("{},{},{},{},{:.6f},{:.6f},1,r{},{}\n", x, y, of_y ? 1 : sense, of_y ? sense : -1,
+                            x + noise(random), y + off + noise(random), (of_y ? 0 : 5) + swing / 3,
+                            k == swing % kOfSwing ? "check" : "fit");
+      }
+    }
+  const Machine machine = parse_machine(kTable, "m.xml");
+  return diagnose::diagnose(kTable, machine, parse_measurement(text, "m.csv", machine));
+}
+
+/// After each reversal the carriage rests at another place (stick-slip).
+TEST(Course, AnOffsetThatChangesAtEachReversalIsNoFunctionOfThePosition) {
+  constexpr std::uint64_t kSeedOfOffsets =
+      4;  // of eight, the one whose offsets a cyclic error fits by chance
+  std::mt19937_64 random(kSeedOfOffsets);
+  std::vector<double> rest(14);
+  for (double& one : rest) one = std::uniform_real_distribution<double>(-0.008, 0.008)(random);
+  const Diagnosis answer =
+      diagnosis_of_swings([&](double, int swing) { return rest[static_cast<std::size_t>(swing)]; });
+  EXPECT_TRUE(names_nothing(answer)) << answer.explanation;
+  const Diagnosis backlash =
+      diagnosis_of_swings([](double, int swing) { return swing % 2 == 0 ? 0.002 : -0.002; });
+  EXPECT_EQ(backlash.verdict, Verdict::kMissingEffect) << backlash.explanation;
+  EXPECT_EQ(backlash.ladder.at(1).effect, "backlash");
+  const Diagnosis scale = diagnosis_of_swings([](double y, int) { return 2e-5 * y; });
+  EXPECT_NE(scale.verdict, Verdict::kUnexplained) << scale.explanation;
+  EXPECT_EQ(scale.ladder.at(1).effect, "scale-error");
 }
 
 }  // namespace

@@ -276,6 +276,8 @@ struct ShapeThresholds {
   /// Experiment: 80 surveys of an independent generator with a known error: true names leave 0 to 4 % (p > 1
   /// %), names that only resemble the error 6 to 60 %.
   double course_share = levels.small, course_chance = std::log(levels.chance_of_loss);
+  /// Smallest number of moves between two reversals of an axis of which a variance can be estimated.
+  double moves = levels.few_readings;
 };
 
 /// Coefficients from which a function of an axis is a curve: level, slope and bend.

@@ -17,8 +17,8 @@ namespace vernier::diagnose {
 std::string doubt_of_course(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                             std::size_t item);
 
-/// Returns the first reason why an accepted effect cannot be what its name states: its shape (shape.h), or
-/// the quantity on which it depends; empty if there is no reason for doubt.
+/// Returns the first reason why an accepted effect cannot be what its name states: its shape (shape.h), the
+/// quantity on which it depends, or the moves of the axes (moves.h); empty if there is no reason for doubt.
 std::string doubt_of(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                      std::size_t item);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/diagnose/shape.h"
+#include "tools/diagnose/doubts/shape.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/diagnose/course.h"
+#include "tools/diagnose/doubts/course.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/diagnose/shape.h"
+#include "tools/diagnose/doubts/moves.h"
+#include "tools/diagnose/doubts/shape.h"
 #include "tools/maths/chance.h"
 
 namespace vernier::diagnose {
@@ -170,8 +171,9 @@ std::string doubt_of_course(const Evidence& evidence, const Pool& pool, const st
 
 std::string doubt_of(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                      std::size_t item) {
-  const std::string of_shape = doubt_of_shape(evidence, pool, items, item);
-  return of_shape.empty() ? doubt_of_course(evidence, pool, items, item) : of_shape;
+  for (const auto doubt : {doubt_of_shape, doubt_of_course, doubt_of_moves})
+    if (std::string reason = doubt(evidence, pool, items, item); !reason.empty()) return reason;
+  return {};
 }
 
 }  // namespace vernier::diagnose
