@@ -15,6 +15,7 @@
 #include "tools/format/units.h"
 #include "tools/import/sizes/outlying_cells.h"
 #include "tools/lint/dense_points.h"
+#include "tools/lint/direction_order.h"
 #include "tools/model/chain/thing_shape.h"
 #include "tools/text/numbers.h"
 #include "tools/text/similar.h"
@@ -35,6 +36,9 @@ class Meaning {
     look_at_things();
     look_at_labels();
     look_at_time();
+    for (const LintColumn& column : table_.columns)
+      if (names_.is_of_axis(column.name, format::AxisQuantity::kSense))
+        look_at_directions(table_, column, names_, findings_);
     look_at_normals();
     look_at_repeats();
     look_at_scale();

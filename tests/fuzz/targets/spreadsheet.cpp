@@ -23,7 +23,7 @@ void take(Bytes bytes) {
     read_sheet_profile(wishes, text.substr(0, split), "f.profile");
     Sheet sheet = read_sheet(text.substr(split + mark.size()), "f.txt", wishes.format);
     SheetTable table = parts_of_sheet(sheet);
-    unfold_runs(sheet, table);
+    unfold_runs(sheet, table, wishes);
     parse_csv(measurement_csv(table_of_sheet(sheet, table, columns_of_sheet(sheet, table, wishes), wishes)),
               "f.csv");
   } catch (const InputError& error) {

@@ -28,7 +28,7 @@ std::string import(const std::string& bytes, SheetWishes wishes = {},
     SheetTable table = parts_of_sheet(sheet);
     note_short_rows(sheet, table);
     leave_computed_rows(sheet, table);
-    unfold_runs(sheet, table);
+    unfold_runs(sheet, table, wishes);
     if (say) say(wishes, table);
     return measurement_csv(table_of_sheet(sheet, table, columns_of_sheet(sheet, table, wishes), wishes));
   } catch (const InputError& error) {

@@ -303,6 +303,24 @@ TEST(ImportCommand, IsGivenForSpreadsheetsOnly) {
             "vernier import laser 'run 1.RTL' -o 'run 1_read.csv'");
 }
 
+TEST(MeasurementLint, ReportsDirectionsAgainstTheOrderOfTheRows) {
+  const auto warned = [](const std::string& rows) {
+    for (const LintFinding& one : lint_measurement("Z[mm],dirZ,run,z[mm]\n" + rows, "m.csv", nullptr))
+      if (one.what.find("contradict the order of the rows") != std::string::npos) return in_one_line(one);
+    return std::string();
+  };
+  const std::string down = "0,{0},1,0\n-50,{0},1,-50\n-100,{0},1,-100\n-150,{0},1,-150\n";
+  const std::string up = "-150,{0},1,-150\n-100,{0},1,-100\n-50,{0},1,-50\n0,{0},1,0\n";
+  const auto with = [](const std::string& rows, int sense) { return fmt::format(fmt::runtime(rows), sense); };
+  const std::string both = warned(with(down, 1) + with(up, -1));
+  EXPECT_TRUE(
+      both.starts_with("m.csv:2: warning: \"dirZ\": the directions contradict the order of the rows in "
+                       "all 2 runs along Z: the positions decrease from row to row, and dirZ is 1"))
+      << both;
+  EXPECT_EQ(warned(with(down, -1) + with(up, 1)), "");
+  EXPECT_EQ(warned(with(down, 1) + with(down, -1)), "") << "a table that is sorted";
+}
+
 // A file of one long word was printed whole, with its terminal sequences.
 TEST(LintLine, QuotesAShortWordAndNoControlCharacter) {
   LintFinding finding;

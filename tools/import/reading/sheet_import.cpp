@@ -68,6 +68,17 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   return wishes;
 }
 
+/// The wishes with the columns that the user assigned. An assignment that is not valid for the headings
+/// before the runs are joined is valid later, or is refused later.
+SheetWishes with_columns(const SheetWords& words, const sheet::SheetTable& table, SheetWishes wishes) {
+  for (const std::string& one : words.columns) try {
+      assign_column(wishes, table, one);
+    } catch (const text::InputError&) {
+      continue;
+    }
+  return wishes;
+}
+
 /// Does an empty cell of this column have the value above it? A run or a set-up that only its first row names
 /// applies to the rows below; other columns only if the user states it.
 bool is_filled_down(const SheetReading& reading, std::size_t k) {
@@ -304,7 +315,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   bool unfolded_axes =
       !axes_left && unfold_axes(result.sheet, result.table, result.wishes, AxisCells::kAboveToo);
   stack_runs(result.sheet, result.table);
-  result.runs = unfold_runs(result.sheet, result.table);
+  result.runs = unfold_runs(result.sheet, result.table, with_columns(words, result.table, result.wishes));
   split_runs(result.sheet, result.table);
   // Runs side by side are one column of readings now.
   if (!axes_left && !unfolded_axes) {

@@ -223,6 +223,20 @@ void judge_runs(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector
       order, heading, columns[k].name, heading);
 }
 
+/// The rows of columns of runs have the order of their directions. Another order shows that the columns were
+/// joined in the order of other values than the positions: a doubt, which the user cannot confirm.
+void judge_joined_runs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                       std::vector<SheetColumn>& columns, std::size_t position, std::size_t k) {
+  const Blocks blocks = blocks_of(sheet, table, position, k);
+  if (blocks.agreeing > 0 || blocks.line == 0) return;
+  columns[k].doubt_place = {sheet.file, blocks.line};
+  columns[k].doubt_word = table.headings[k].text;
+  columns[k].doubt = fmt::format(
+      "the directions of the runs contradict the order of the positions of {0}: the rows of a run were not "
+      "ordered by \"{1}\"; move the column \"{1}\" to the left of all other columns",
+      columns[position].name, table.headings[position].text);
+}
+
 RowOrder order_of(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
                   std::size_t position, std::size_t direction) {
   const SheetWishes usual;
@@ -278,7 +292,10 @@ void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vec
   // A column with the name of the measurement file keeps its numbers.
   std::optional<Codes> codes = table.headings[k].text == columns[k].name ? std::nullopt : meaning_of(found);
   if (!codes) {
-    if (position == columns.end() || unfolded) return;
+    if (position == columns.end()) return;
+    if (unfolded)
+      return judge_joined_runs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()),
+                               k);
     judge_signs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
     judge_runs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
     judge_order(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);

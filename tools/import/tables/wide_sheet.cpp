@@ -15,6 +15,7 @@
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/import/columns/column_guess.h"
+#include "tools/import/tables/run_positions.h"
 #include "tools/import/tables/run_units.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
@@ -238,15 +239,16 @@ sheet::Heading heading_of_readings(sheet::Sheet& sheet, const sheet::SheetTable&
 }
 
 /// Returns 1 if the positions increase from row to row, -1 if they decrease, else 0. `enough`: with fewer
-/// rows the result is 0.
+/// rows the result is 0. `run`: only the rows with a reading of this column count; the column of the
+/// positions itself for all rows.
 int order_of_positions(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t position,
-                       std::size_t enough) {
+                       std::size_t enough, std::size_t run) {
   std::optional<double> before;
   std::size_t rows = 0;
   int order = 0;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const auto value = sheet::number_at(sheet, row, position);
-    if (!value) continue;
+    if (!value || sheet.rows[row][run].empty()) continue;
     if (before) {
       const int step = *value > *before ? 1 : *value < *before ? -1 : 0;
       if (step == 0 || (order != 0 && step != order)) return 0;
@@ -261,7 +263,7 @@ int order_of_positions(const sheet::Sheet& sheet, const sheet::SheetTable& table
 /// True if the positions decrease from row to row.
 bool positions_decrease(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t position) {
   constexpr std::size_t kEnough = 3;  // fewer rows show no order
-  return order_of_positions(sheet, table, position, kEnough) < 0;
+  return order_of_positions(sheet, table, position, kEnough, position) < 0;
 }
 
 /// A table whose positions decrease from row to row. "hin" is the way that the rows go, as in a table with
@@ -387,7 +389,7 @@ void note_late_run(sheet::Sheet& sheet, const sheet::SheetTable& table, std::siz
 
 }  // namespace
 
-std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
+std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table, const SheetWishes& wishes) {
   if (!table.has_headings) return 0;
   std::vector<RunColumn> runs;
   std::vector<std::size_t> others;
@@ -409,7 +411,8 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
   if (others.empty() || !belong_together(runs)) return 0;
   const std::map<int, std::size_t> positions = positions_by_direction(sheet, table, others);
   number_runs(sheet, table, runs);
-  settle_decreasing_positions(sheet, table, runs, others.front(), !positions.empty());
+  const std::size_t position = positions_of_runs(sheet, table, others, wishes);
+  settle_decreasing_positions(sheet, table, runs, position, !positions.empty());
   constexpr std::size_t kMostCells = 8u << 20;  // 64 MB of numbers
   const std::size_t width = others.size() + 3, data = sheet.rows.size() - table.first_data;
   if (data > kMostCells / width / runs.size())
@@ -443,7 +446,7 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
     note_late_run(sheet, table, one.column);
     const auto own_positions = positions.find(one.sense);
     const int order = order_of_positions(
-        sheet, table, own_positions == positions.end() ? others.front() : own_positions->second, 2);
+        sheet, table, own_positions == positions.end() ? position : own_positions->second, 2, one.column);
     for (std::size_t count = 0; count < data; ++count) {
       const std::size_t row = table.first_data + (one.sense * order < 0 ? data - 1 - count : count);
       if (sheet.rows[row][one.column].empty()) continue;

@@ -46,12 +46,12 @@ const WordSet kTiltWords = {"pitch",      "yaw",        "roll",   "nicken", "nic
 const WordSet kCountingWords = {"nr",    "no",    "num",    "nummer", "number", "index", "idx",       "id",
                                 "lfd",   "punkt", "punkte", "point",  "points", "pt",    "messpunkt", "row",
                                 "zeile", "#",     "n",      "pos.nr", "posnr",  "sample"};
-const WordSet kStatisticWords = {"mittel", "mittelwert", "mittelwerte", "mittlere", "mittl", "mean",
-                                 "average", "avg", "mw", "durchschnitt", "stdev", "stdabw", "stabw",
-                                 "spannweite", "standardabweichung", "means", "averages", "moyenne",
-                                 "écart-type", "mittelwerts",
-                                 // Signs of a mean and of a standard deviation; Ø has no small letter here.
-                                 "x\u0304", "x\u0305", "ø", "Ø", "⌀", "∅", "σ", "2σ", "3σ"};
+const WordSet kStatisticWords = {
+    "mittel", "mittelwert", "mittelwerte", "mittlere", "mittl", "mean", "average", "avg", "mw",
+    "durchschnitt", "stdev", "stdabw", "stabw", "spannweite", "standardabweichung", "means", "averages",
+    "moyenne", "écart-type", "mittelwerts", "umkehrspanne", "umkehrspannen", "umkehrfehler", "umkehrspiel",
+    // Signs of a mean and of a standard deviation; Ø has no small letter here.
+    "x\u0304", "x\u0305", "ø", "Ø", "⌀", "∅", "σ", "2σ", "3σ"};
 const WordSet kForthWords = {"1",    "+1",       "+",       "forward", "fwd",      "forth",    "up",
                              "pos",  "positive", "positiv", "vor",     "vorwärts", "hin",      "auf",
                              "plus", "cw",       "aller",   "\u2191",  "\u2192",   "hinfahrt", "hinweg"};
@@ -112,9 +112,13 @@ bool says_standard_deviation(std::string_view text) {
 }
 bool names_statistic(const sheet::Heading& heading) {
   if (says_standard_deviation(heading.name)) return true;
-  const std::vector<std::string> words = heading_words(heading.name);
-  return std::any_of(words.begin(), words.end(),
-                     [](const std::string& word) { return says_statistic(text::in_small_letters(word)); });
+  const std::vector<std::string> words = heading_words(text::in_small_letters(heading.name));
+  // "Reversal error" is the difference of the means of both directions (ISO 230-2:2014, 2.11).
+  static const WordSet kOfReversal = {"reversal", "error", "value", "span", "b"};
+  const bool reversal =
+      std::all_of(words.begin(), words.end(), [](const auto& word) { return kOfReversal.contains(word); });
+  if (reversal && std::find(words.begin(), words.end(), "reversal") != words.end()) return true;
+  return std::any_of(words.begin(), words.end(), says_statistic);
 }
 bool says_run(const std::string& word) { return kRunWords.contains(word); }
 bool is_run_number(std::string_view word) {

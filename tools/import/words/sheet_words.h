@@ -19,8 +19,8 @@ bool says_measured(const std::string& word);
 /// True for the position that the control shows: "Anzeige". Beside another measurement of the axis, this
 /// position is the commanded one.
 bool says_display(const std::string& word);
-/// True for a statistic that a spreadsheet computes from its readings (a mean or a standard deviation), for
-/// example "Mittelwert".
+/// True for a statistic that a spreadsheet computes from its readings (a mean, a standard deviation or a
+/// reversal error), for example "Mittelwert".
 bool says_statistic(const std::string& word);
 /// True for the French words of a standard deviation: "Écart-type".
 bool says_standard_deviation(std::string_view text);
