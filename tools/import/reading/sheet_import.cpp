@@ -14,6 +14,7 @@
 #include "tools/import/reading/invalid_rows.h"
 #include "tools/import/reading/rows_below.h"
 #include "tools/import/reading/side_runs.h"
+#include "tools/import/reading/side_statistics.h"
 #include "tools/import/reading/title_lines.h"
 #include "tools/import/reading/title_positions.h"
 #include "tools/import/reading/verdict_columns.h"
@@ -302,14 +303,15 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   note_short_rows(result.sheet, result.table);
   leave_invalid_rows(result.sheet, result.table);
   refuse_counts_below(result.sheet, result.table);
-  leave_computed_rows(result.sheet, result.table);
   const bool axes_left = std::any_of(words.left.begin(), words.left.end(), [&](const std::string& one) {
     return find_heading(result.table, one) != std::string::npos;
   });
-  std::vector<std::string> named = words.left;
-  named.insert(named.end(), words.columns.begin(), words.columns.end());
+  std::vector<std::string> named = words.columns;
   named.insert(named.end(), words.deviations.begin(), words.deviations.end());
+  leave_side_statistics(result.sheet, result.table, named);
+  named.insert(named.end(), words.left.begin(), words.left.end());
   for (const SheetWishes::Assignment& wish : result.wishes.assignments) named.push_back(wish.heading);
+  leave_computed_rows(result.sheet, result.table);
   leave_verdicts(result.sheet, result.table, named);
   leave_differences(result.sheet, result.table, named);
   bool unfolded_axes =

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/import/tables/statistic_values.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/heading.h"
 #include "tools/sheet/sheet_number.h"
@@ -39,6 +40,12 @@ const WordSet kBeside = {"value",    "values",    "wert",   "werte",  "dev",   "
                          "abw",      "error",     "fehler", "of",     "the",   "der",       "die",
                          "all",      "aller",     "alle",   "runs",   "läufe", "von",       "abs",
                          "standard", "quadratic", "square", "column", "spalte"};
+
+/// A row with a word of a statistic in one of its columns.
+struct Computed {
+  std::size_t row = 0, column = 0;
+  std::string word;
+};
 
 enum class Names { kNoRow, kRowAtTheEnd, kRow };
 
@@ -143,21 +150,64 @@ std::vector<std::size_t> results_at_the_end(const sheet::Sheet& sheet, const she
 
 bool says_computed_row(const std::string& cell) { return computed_word(cell) != Names::kNoRow; }
 
+namespace {
+
+/// What a row is whose cell in the column `k` is a word of a statistic. A row with a position is computed
+/// only if its numbers are statistics. Otherwise the word is a remark about a measurement, or, in a column
+/// that has a value in most rows, the kind of the row is not known.
+enum class Row { kComputed, kRemark, kUnknown };
+Row kind_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t row, std::size_t k,
+            std::size_t since) {
+  if (!has_number(sheet, row, position_columns(table)) || agrees_with_statistics(sheet, table, row, since))
+    return Row::kComputed;
+  std::size_t filled = 0;
+  for (std::size_t other = table.first_data; other < sheet.rows.size(); ++other)
+    filled += sheet.rows[other][k].empty() ? 0 : 1;
+  return 2 * filled > sheet.rows.size() - table.first_data ? Row::kUnknown : Row::kRemark;
+}
+
+/// Takes the rows out of `computed` that are measurements with a remark, with a note for each, and refuses
+/// the table if the kind of a row is not known.
+void keep_measurements(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<Computed>& computed) {
+  std::size_t since = table.first_data;
+  std::erase_if(computed, [&](const Computed& one) {
+    const Row kind = kind_of(sheet, table, one.row, one.column, since);
+    since = one.row + 1;
+    if (kind == Row::kUnknown)
+      throw text::InputError(
+          {sheet.file, sheet.line[one.row]}, one.word,
+          "this word names a computed row, but the row has a position, and its values are no statistics of "
+          "the rows above it: if the row is computed, delete the row; if it is a measurement, change the "
+          "word");
+    if (kind == Row::kRemark)
+      sheet.notes.push_back(fmt::format(
+          "line {}: the word \"{}\" is a remark: the row has a position, its values are no statistics of the "
+          "rows above it, and it is read as a measurement",
+          sheet.line[one.row], one.word));
+    return kind == Row::kRemark;
+  });
+}
+
+}  // namespace
+
 void leave_computed_rows(sheet::Sheet& sheet, const sheet::SheetTable& table) {
   const std::vector<std::size_t> named = results_at_the_end(sheet, table);
-  std::vector<std::pair<std::size_t, std::string>> computed;
+  std::vector<Computed> computed;
   std::set<std::size_t> rows;
   for (std::size_t k = 0; !sheet.rows.empty() && k < sheet.rows.front().size(); ++k)
     for (const std::size_t row : computed_rows_by(sheet, table, k))
-      if (rows.insert(row).second) computed.emplace_back(row, sheet.rows[row][k]);
+      if (rows.insert(row).second) computed.push_back({row, k, sheet.rows[row][k]});
   for (const std::size_t row : named)
-    if (rows.insert(row).second) computed.emplace_back(row, label_of(sheet.rows[row]));
+    if (rows.insert(row).second) computed.push_back({row, 0, label_of(sheet.rows[row])});
   if (rows.empty() || rows.size() + table.first_data >= sheet.rows.size()) return;
-  std::sort(computed.begin(), computed.end());
-  for (const auto& [row, word] : computed)
-    sheet.notes.push_back(fmt::format(
-        "line {}: the row \"{}\" is computed from the rows above it and is omitted", sheet.line[row], word));
-  for (auto row = rows.rbegin(); row != rows.rend(); ++row) sheet::remove_row(sheet, *row);
+  std::sort(computed.begin(), computed.end(),
+            [](const Computed& a, const Computed& b) { return a.row < b.row; });
+  keep_measurements(sheet, table, computed);
+  for (const Computed& one : computed)
+    sheet.notes.push_back(
+        fmt::format("line {}: the row \"{}\" is computed from the rows above it and is omitted",
+                    sheet.line[one.row], one.word));
+  for (auto one = computed.rbegin(); one != computed.rend(); ++one) sheet::remove_row(sheet, one->row);
 }
 
 void note_short_rows(sheet::Sheet& sheet, const sheet::SheetTable& table) {
