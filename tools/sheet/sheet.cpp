@@ -457,6 +457,7 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
   sheet.sheet = read.name;
   sheet.sheets = std::move(read.all);
   sheet.elsewhere = std::move(read.elsewhere);
+  sheet.tables_beside = std::move(read.tables_beside);
   if (read.hidden_rows > 0)
     sheet.notes.push_back(
         fmt::format("{} hidden rows are read as well; delete the rows that do not belong to the table",

@@ -48,6 +48,7 @@ struct Sheet {
                                                // workbook
   std::vector<Remark> remarks;                 // comments, and lines at the top that were skipped
   std::vector<TextElsewhere> elsewhere;        // texts on the other visible sheets of a workbook
+  std::vector<std::string> tables_beside;      // names of the other visible sheets with rows of numbers
   std::set<std::string> exact;                 // cells with a decimal sign that the workbook stores as
                                                // numbers: their sign separates no thousands
   std::vector<std::string> notes;              // notes for the user about rows that were left out

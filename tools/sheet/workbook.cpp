@@ -120,7 +120,7 @@ class Reader {
     }
     if (found) {
       found->all = std::move(names);
-      found->elsewhere = texts_beside(found->name);
+      look_beside(*found);
       return std::move(*found);
     }
     if (wanted.empty() && !hidden.empty())
@@ -150,16 +150,19 @@ class Reader {
     return rows >= 2;
   }
 
-  /// The texts on the other visible sheets; a sheet that cannot be read has none.
-  std::vector<TextElsewhere> texts_beside(const std::string& name) const {
+  /// Adds the texts on the other visible sheets, and the names of those with a table; a sheet that cannot be
+  /// read has none.
+  void look_beside(WorkbookSheet& found) const {
     constexpr std::size_t kLongEnough = 5, kMostTexts = 1000;
-    std::vector<TextElsewhere> texts;
+    std::vector<TextElsewhere>& texts = found.elsewhere;
     for (const pugi::xml_node entry : child(workbook_.document_element(), "sheets").children()) {
       const std::string_view state = entry.attribute("state").value();
-      if (name == entry.attribute("name").value() || state == "hidden" || state == "veryHidden") continue;
+      if (found.name == entry.attribute("name").value() || state == "hidden" || state == "veryHidden")
+        continue;
       try {
         const WorkbookSheet sheet = cells_of(entry);
         const bool table = is_table(sheet);
+        if (table) found.tables_beside.push_back(sheet.name);
         for (std::size_t i = 0; i < sheet.rows.size(); ++i)
           for (std::size_t k = 0; k < sheet.rows[i].size() && texts.size() < kMostTexts; ++k)
             if (sheet.is_number[i][k] == 0 && sheet.rows[i][k].size() >= kLongEnough)
@@ -168,7 +171,6 @@ class Reader {
         continue;
       }
     }
-    return texts;
   }
 
   void load(pugi::xml_document& document, const std::string& text, const std::string& name) const {

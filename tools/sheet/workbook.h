@@ -27,6 +27,7 @@ struct WorkbookSheet {
   std::size_t hidden_rows = 0;                 // number of rows that are hidden by a filter or by hand; they
                                                // are included in `rows`
   std::vector<TextElsewhere> elsewhere;        // texts on the other visible sheets
+  std::vector<std::string> tables_beside;      // names of the other visible sheets with rows of numbers
 };
 
 /// Reads the sheet with this name or number (from 1) from a workbook. If `sheet` is empty, the first visible

@@ -8,7 +8,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "tools/sheet/workbook_writer.h"
 #include "tools/text/files.h"
 
 namespace vernier::import_remedies_test {
@@ -59,6 +61,26 @@ TEST_F(ImportRemedies, OfATableKeepTheOptionsOfTheCall) {
                         "Messung --machine m.xml --set \"Y[mm]=POSITION\" -o read.csv"));
   ASSERT_EQ(run(remedy()), 0) << said;
   EXPECT_THAT(text::read_file(folder + "/read.csv"), testing::StartsWith("X[mm],x[mm],run,u[um],Y[mm]\n"));
+}
+
+TEST_F(ImportRemedies, OfAWorkbookReadEachOfItsSheets) {
+  const auto rows = [](const std::string& axis) {
+    return std::vector<std::vector<std::string>>{
+        {axis + " [mm]", "Abw. " + axis + " [um]"}, {"0", "1"}, {"50", "2"}, {"100", "3"}};
+  };
+  text::write_file(
+      folder + "/mill.xlsx",
+      sheet::workbook_of({{"Achse X", rows("X")}, {"Achse Y", rows("Y")}, {"Achse Z", rows("Z")}}));
+  ASSERT_EQ(run("vernier import table mill.xlsx -o x.csv"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("which are not read: \"Achse Y\", \"Achse Z\"; to read them, give: "));
+  const std::size_t first = said.find("vernier import table mill.xlsx --sheet"), end = said.find(';', first);
+  ASSERT_NE(end, std::string::npos) << said;
+  const std::string second = said.substr(end + 2, said.find('\n', end) - end - 2);
+  ASSERT_EQ(run(said.substr(first, end - first)), 0) << said;
+  EXPECT_THAT(said, testing::Not(HasSubstr("more sheets")));
+  ASSERT_EQ(run(second), 0) << said;
+  EXPECT_THAT(text::read_file(folder + "/mill_Achse_Y.csv"), testing::StartsWith("Y[mm],y[mm]\n"));
+  EXPECT_THAT(text::read_file(folder + "/mill_Achse_Z.csv"), testing::StartsWith("Z[mm],z[mm]\n"));
 }
 
 /// A robot with two joints, and a table that has its joints under other names.

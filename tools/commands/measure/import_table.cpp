@@ -12,6 +12,7 @@
 #include "tools/import/reading/sheet_import.h"
 #include "tools/import/tables/survey.h"
 #include "tools/import/words/joint_names.h"
+#include "tools/lint/lint_table.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"
@@ -97,6 +98,26 @@ OpenAxes open_axes(const model::Machine& machine, const importer::SheetReading& 
   return open;
 }
 
+/// The other sheets with tables, with a command for each: only one sheet is read.
+void note_other_sheets(sheet::Sheet& sheet, const CLI::App& kind) {
+  if (kind.count("--sheet") > 0 || sheet.tables_beside.empty()) return;
+  std::string names, calls;
+  const std::string stem = sheet.file.substr(0, sheet.file.rfind('.'));
+  for (const std::string& name : sheet.tables_beside) {
+    names += (names.empty() ? "\"" : ", \"") + name + "\"";
+    std::string in_file = name;
+    std::replace_if(
+        in_file.begin(), in_file.end(), [](char c) { return c == ' ' || c == '/' || c == '\\'; }, '_');
+    calls += fmt::format("{}{} --sheet {} -o {}", calls.empty() ? "" : "; ",
+                         call_of(kind, {"--output", "--json", "--preview", "--save-profile"}),
+                         lint::quoted_for_shell(name), lint::quoted_for_shell(stem + "_" + in_file + ".csv"));
+  }
+  sheet.notes.push_back(
+      fmt::format("the workbook has more sheets with tables, which are not read: {}; to read them, "
+                  "give: {}",
+                  names, calls));
+}
+
 void run_table(const TableArguments& arguments, const CLI::App& kind) {
   importer::SheetWishes wishes;
   if (!arguments.profile.empty())
@@ -121,6 +142,7 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
       open = {};
     }
   }
+  note_other_sheets(reading.sheet, kind);
   const sheet::Sheet& sheet = reading.sheet;
   std::FILE* out = human_stream(arguments.json);
   if (arguments.preview) print_columns(out, reading);

@@ -12,6 +12,7 @@
 #include "tools/import/reading/axis_rows.h"
 #include "tools/import/reading/degree_cells.h"
 #include "tools/import/reading/invalid_rows.h"
+#include "tools/import/reading/paired_sheets.h"
 #include "tools/import/reading/rows_below.h"
 #include "tools/import/reading/side_runs.h"
 #include "tools/import/reading/side_statistics.h"
@@ -312,6 +313,9 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   named.insert(named.end(), words.left.begin(), words.left.end());
   for (const SheetWishes::Assignment& wish : result.wishes.assignments) named.push_back(wish.heading);
   leave_computed_rows(result.sheet, result.table);
+  if (!result.wishes.format.table)
+    join_paired_sheet(result.sheet, result.table, bytes, result.wishes.format,
+                      result.wishes.format.sheet.empty());
   leave_verdicts(result.sheet, result.table, named);
   leave_differences(result.sheet, result.table, named);
   bool unfolded_axes =
