@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
+#include <set>
 #include <string>
 
 #include "tools/sheet/dates.h"
@@ -36,6 +38,62 @@ bool is_line_of_headings(const Sheet& sheet, std::size_t row, std::size_t data) 
   return words >= 2 && !is_line_of_units(sheet, row);
 }
 
+/// A line that only numbers a page: "Seite 2 von 2", "Page 2/3", "Fortsetzung".
+bool is_page_line(const std::vector<std::string>& cells) {
+  static const std::set<std::string> kPages = {"seite", "page", "blatt", "sheet", "fortsetzung", "continued"};
+  static const std::set<std::string> kBeside = {"von", "of"};
+  bool page = false;
+  for (const std::string& cell : cells)
+    for (const std::string& word : text::words_in(text::in_small_letters(cell), " \t_-./:;,()[]")) {
+      const bool names = kPages.contains(word);
+      page |= names;
+      if (!names && !kBeside.contains(word) && word.find_first_not_of("0123456789") != std::string::npos)
+        return false;
+    }
+  return page;
+}
+
+/// The rows above the first row of data from a row on.
+std::size_t data_from(const Sheet& sheet, std::size_t row) {
+  while (row < sheet.rows.size() && !is_row_of_data(sheet, row)) ++row;
+  return row;
+}
+
+/// Joins pages: the headings of each further table are those of the first one, and only page numbers and
+/// lines of the first page are above them. False: the tables are not the pages of one table, and the sheet
+/// does not change.
+bool join_pages(Sheet& sheet, const std::vector<std::size_t>& first) {
+  const std::size_t top = data_from(sheet, 0);
+  std::vector<std::size_t> drop;
+  for (std::size_t table = 1; table < first.size(); ++table) {
+    const std::size_t data = data_from(sheet, first[table]);
+    std::size_t heads = 0;  // equal rows directly above the data
+    while (heads < top && heads < data - first[table] &&
+           sheet.rows[top - 1 - heads] == sheet.rows[data - 1 - heads])
+      ++heads;
+    if (heads == 0) return false;
+    bool page = false;
+    for (std::size_t row = first[table]; row + heads < data; ++row) {
+      const bool of_page = is_page_line(sheet.rows[row]);
+      const auto above = sheet.rows.begin() + static_cast<std::ptrdiff_t>(top);
+      if (!of_page && !is_blank(sheet.rows[row]) &&
+          std::find(sheet.rows.begin(), above, sheet.rows[row]) == above)
+        return false;
+      page |= of_page;
+    }
+    if (!page) return false;
+    for (std::size_t row = first[table]; row < data; ++row) drop.push_back(row);
+  }
+  std::string lines;
+  for (auto row = first.begin() + 1; row != first.end(); ++row)
+    lines += (lines.empty() ? "" : ", ") + std::to_string(sheet.line[*row]);
+  sheet.notes.push_back(fmt::format(
+      "the headings are repeated on further pages (line {}): the rows of all pages are read as one table",
+      lines));
+  for (auto row = drop.rbegin(); row != drop.rend(); ++row) remove_row(sheet, *row);
+  return true;
+}
+
 }  // namespace
 
 std::vector<std::size_t> tables_of(const Sheet& sheet) {
@@ -57,7 +115,7 @@ std::vector<std::size_t> tables_of(const Sheet& sheet) {
 
 void keep_table(Sheet& sheet, std::optional<std::size_t> number) {
   const std::vector<std::size_t> first = tables_of(sheet);
-  if (!number && first.size() == 1) return;
+  if (!number && (first.size() == 1 || join_pages(sheet, first))) return;
   std::string lines;
   for (const std::size_t row : first) lines += (lines.empty() ? "" : ", ") + std::to_string(sheet.line[row]);
   const std::string found = std::to_string(first.size()) + " table" + (first.size() == 1 ? "" : "s") +

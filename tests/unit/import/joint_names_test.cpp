@@ -52,6 +52,9 @@ TEST(JointColumns, OfTheOrderAloneAreProposed) {
               ElementsAre("proposed", "J1=actual_q_0 [rad]", "J2=actual_q_1 [rad]"));
   EXPECT_THAT(words(axes({"J1", "J2"}), columns({"shoulder", "elbow"}, "deg")),
               ElementsAre("proposed", "J1=shoulder [deg]", "J2=elbow [deg]"));
+  EXPECT_THAT(words(axes({"J1", "J2"}), columns({"Pose", "shoulder", "elbow"}, "")),
+              ElementsAre("proposed", "J1[deg]=shoulder", "J2[deg]=elbow"))
+      << "beside a count";
 }
 
 TEST(JointColumns, OfTwoFamiliesOrOfAnotherUnitAreNotProposed) {

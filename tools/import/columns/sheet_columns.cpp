@@ -97,6 +97,8 @@ void refuse_another_unit(const sheet::Sheet& sheet, const sheet::SheetTable& tab
                          const SheetWishes::Assignment& wish) {
   const sheet::Heading& heading = table.headings[at];
   if (wish.column.unit.empty() || heading.unit.empty() || wish.column.unit == heading.unit) return;
+  if (heading.unit == "in" && wish.column.unit == "arcsec" && heading.text.find('"') != std::string::npos)
+    return;  // the sign " has both meanings
   throw text::InputError(
       wish.place.file.empty() ? text::Place{sheet.file, sheet.line[table.heading_row]} : wish.place,
       heading.text,
@@ -116,6 +118,34 @@ void leave_statistics(const sheet::SheetTable& table, std::vector<SheetColumn>& 
   for (std::size_t k = 0; reading && k < columns.size(); ++k)
     if (columns[k].why == "by its heading" && names_statistic(table.headings[k]))
       leave_column(columns[k], "this column is computed from the readings in the other columns");
+}
+
+/// True if the positions of an axis are angles.
+bool rotates(const std::vector<SheetColumn>& columns, const std::string& axis) {
+  return std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& one) {
+    return one.use == SheetColumn::Use::kColumn && one.name == axis && is_angle(one.unit);
+  });
+}
+
+/// The sign " is the unit arcsec beside positions in degrees, and inch elsewhere.
+void settle_arcseconds(std::vector<SheetColumn>& columns, const Guess& guess) {
+  std::string only;
+  std::size_t axes = 0;
+  for (const SheetColumn& column : columns)
+    if (column.use == SheetColumn::Use::kColumn && guess.is_axis(column.name)) {
+      ++axes;
+      only = column.name;
+    }
+  for (SheetColumn& column : columns) {
+    if (column.unit != "in" || column.use == SheetColumn::Use::kLeft) continue;
+    const bool deviation = column.use == SheetColumn::Use::kDeviation;
+    for (const char* const axis : {"A", "B", "C"}) {
+      const bool of_axis = deviation
+                               ? column.name == axis || (column.name.empty() && axes == 1 && only == axis)
+                               : column.name == *reading_of(axis);
+      if (of_axis && rotates(columns, axis)) column.unit = "arcsec";
+    }
+  }
 }
 
 /// A deviation beside a measured position of the same axis: one of the two is the reading.
@@ -170,12 +200,6 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     if (deviation && column.name.empty() && axes.size() == 1) column.name = *axes.begin();
     if (deviation && column.name.empty() && axes.empty() && alone_measured.size() == 1)
       column.name = *alone_measured.begin();
-    if (deviation && column.unit == "in") {
-      const auto along = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& one) {
-        return one.use == SheetColumn::Use::kColumn && one.name == column.name;
-      });
-      if (along != columns.end() && is_angle(along->unit)) column.unit = "arcsec";  // " beside degrees
-    }
     if (deviation && !axes.contains(column.name) && alone_measured.contains(column.name))
       column.to_target = true;
     else if (deviation && !column.name.empty() && !positions.contains(column.name) && reading_of(column.name))
@@ -211,13 +235,6 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
              !holds_other_sign(sheet, table, k))  // such cells are refused with their row
       leave_column(column, content == Holds::kNothing ? "empty" : "no numbers");
   }
-}
-
-/// True if the positions of an axis are angles.
-bool rotates(const std::vector<SheetColumn>& columns, const std::string& axis) {
-  return std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& one) {
-    return one.use == SheetColumn::Use::kColumn && one.name == axis && is_angle(one.unit);
-  });
 }
 
 /// Titles state the units of deviations and positions whose headings have none: "Abweichungen in µm",
@@ -295,6 +312,7 @@ std::vector<SheetColumn> columns_of_sheet(const sheet::Sheet& sheet, const sheet
   const Guess guess(wishes);
   std::vector<SheetColumn> columns = columns_by_headings(sheet, table, wishes);
   leave_statistics(table, columns);
+  settle_arcseconds(columns, guess);
   settle_by_values(sheet, table, columns);
   settle(sheet, table, columns, guess, wishes.constants);
   if (!wishes.one_motion) refuse_tables_side_by_side(sheet, table, columns);

@@ -12,6 +12,7 @@
 #include "tools/import/reading/axis_rows.h"
 #include "tools/import/reading/degree_cells.h"
 #include "tools/import/reading/invalid_rows.h"
+#include "tools/import/reading/odd_rows.h"
 #include "tools/import/reading/paired_sheets.h"
 #include "tools/import/reading/rows_below.h"
 #include "tools/import/reading/side_runs.h"
@@ -27,6 +28,7 @@
 #include "tools/import/sizes/typed_cells.h"
 #include "tools/import/tables/computed_rows.h"
 #include "tools/import/tables/directions.h"
+#include "tools/import/tables/run_signs.h"
 #include "tools/import/tables/table_shape.h"
 #include "tools/import/tables/thousands.h"
 #include "tools/import/tables/wide_sheet.h"
@@ -302,7 +304,10 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   refuse_transposed(result.sheet, result.table);
   leave_words_below(result.sheet, result.table);
   note_short_rows(result.sheet, result.table);
+  leave_state_lines(result.sheet, result.table);
   leave_invalid_rows(result.sheet, result.table);
+  note_repeated_readings(result.sheet, result.table);
+  note_failed_formulas(result.sheet, result.table);
   refuse_counts_below(result.sheet, result.table);
   const bool axes_left = std::any_of(words.left.begin(), words.left.end(), [&](const std::string& one) {
     return find_heading(result.table, one) != std::string::npos;
@@ -317,6 +322,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
     join_paired_sheet(result.sheet, result.table, bytes, result.wishes.format,
                       result.wishes.format.sheet.empty());
   leave_verdicts(result.sheet, result.table, named);
+  apply_sign_column(result.sheet, result.table, named);
   leave_differences(result.sheet, result.table, named);
   bool unfolded_axes =
       !axes_left && unfold_axes(result.sheet, result.table, result.wishes, AxisCells::kAboveToo);

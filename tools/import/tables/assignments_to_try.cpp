@@ -73,10 +73,39 @@ bool names_counting(const sheet::Heading& heading) {
   });
 }
 
+/// Options that make columns X, Y, Z in a unit of length the measured point, if most other columns of numbers
+/// have no unit: poses of a robot by its joints. Empty for other tables.
+std::string point_of_robot(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
+                           const Guess& guess) {
+  constexpr std::size_t kFewestJoints = 3;  // fewer columns may be temperatures or loads
+  std::string options;
+  std::size_t joints = 0;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kColumn || column.words) continue;
+    const auto unit = format::find_unit(column.unit);
+    const bool length = !column.unit.empty() && unit && unit->dimension == format::Dimension::kLength;
+    const bool point = column.name == "X" || column.name == "Y" || column.name == "Z";
+    if (point && !length) return "";
+    if (point)
+      options += fmt::format("{}--column \"{}={}\"", options.empty() ? "" : " ",
+                             text::in_small_letters(column.name), table.headings[k].text);
+    else
+      joints += !length && !is_known_name(column.name) && !names_counting(table.headings[k]) &&
+                        (guess.is_axis(column.name) || column.unit.empty() || is_angle(column.unit))
+                    ? 1
+                    : 0;
+  }
+  return joints >= kFewestJoints && !options.empty()
+             ? options + " (the point that was measured in the poses of a robot)"
+             : "";
+}
+
 }  // namespace
 
 std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                const std::vector<SheetColumn>& columns, const Guess& guess) {
+  if (std::string robot = point_of_robot(table, columns, guess); !robot.empty()) return robot;
   const auto axis = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& column) {
     return column.use == SheetColumn::Use::kColumn && guess.is_axis(column.name);
   });

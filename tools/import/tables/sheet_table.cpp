@@ -298,6 +298,8 @@ std::string empty_readings(const sheet::SheetTable& table, const std::vector<She
 std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, const std::string& cell,
                       std::size_t row) {
   const text::Place place{sheet.file, sheet.line[row]};
+  const SheetWishes usual;
+  const bool axis = column.use == SheetColumn::Use::kColumn && Guess(usual).is_axis(column.name);
   if (column.words) return cell;
   if (is_label(column.name)) {
     const std::string small = text::in_small_letters(cell);
@@ -306,7 +308,7 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
     if (format::is_role(small) || small.empty()) return small;
     throw text::InputError(place, cell, format::kRoleRule);
   }
-  if (is_missing(cell) && !is_sense(column.name)) return "";
+  if (is_missing(cell) && !is_sense(column.name) && !(axis && is_failed_formula(cell))) return "";
   if (cell.empty())
     throw text::InputError(place, column.name,
                            "the cell of the approach direction is empty; if the value above it applies, give "
@@ -333,9 +335,11 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
   if (sheet::plain_number(cell, !sheet.decimal_comma))
     throw text::InputError(place, cell,
                            fmt::format("not a number, for {}: {}", column.name, other_decimal_sign(sheet)));
-  throw text::InputError(place, cell,
-                         "not a number, for " + column.name +
-                             "; write - in a cell without a value, or leave the column out (--leave)");
+  throw text::InputError(
+      place, cell,
+      "not a number, for " + column.name +
+          (axis ? "; correct the number, or delete the row if it is no measurement"
+                : "; write - in a cell without a value, or leave the column out (--leave)"));
 }
 
 }  // namespace

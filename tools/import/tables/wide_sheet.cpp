@@ -16,6 +16,7 @@
 #include "tools/format/units.h"
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/tables/run_positions.h"
+#include "tools/import/tables/run_signs.h"
 #include "tools/import/tables/run_units.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
@@ -411,6 +412,10 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table, const She
   if (others.empty() || !belong_together(runs)) return 0;
   const std::map<int, std::size_t> positions = positions_by_direction(sheet, table, others);
   number_runs(sheet, table, runs);
+  // The two directions of an axis may have opposite values: only runs of one direction are compared.
+  std::map<int, std::vector<std::size_t>> of_direction;
+  for (const RunColumn& one : runs) of_direction[one.sense].push_back(one.column);
+  for (const auto& [sense, columns] : of_direction) note_unsigned_runs(sheet, table, columns);
   const std::size_t position = positions_of_runs(sheet, table, others, wishes);
   settle_decreasing_positions(sheet, table, runs, position, !positions.empty());
   constexpr std::size_t kMostCells = 8u << 20;  // 64 MB of numbers

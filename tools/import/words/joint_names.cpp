@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "tools/format/units.h"
+#include "tools/import/words/sheet_words.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
@@ -50,6 +51,12 @@ bool has_unit(const MissingAxis& axis, const FreeColumn& column, bool stated) {
   if (column.unit.empty()) return !stated;
   const auto unit = format::find_unit(column.unit);
   return unit && unit->dimension == (axis.rotary ? format::Dimension::kAngle : format::Dimension::kLength);
+}
+
+/// True for a number of the pose or the row: "Pose", "Nr.".
+bool counts_rows(const FreeColumn& column) {
+  const std::vector<std::string> words = heading_words(text::in_small_letters(column.heading));
+  return column.unit.empty() && !words.empty() && std::all_of(words.begin(), words.end(), says_counting);
 }
 
 using JointPairs = std::vector<JointColumns::Pair>;
@@ -123,8 +130,9 @@ JointPairs by_order(const std::vector<MissingAxis>& axes, const std::vector<Free
   if (all.size() > 1) return {};
   std::vector<std::size_t> order;
   for (std::size_t k = 0; k < columns.size(); ++k)
-    if (std::any_of(axes.begin(), axes.end(),
-                    [&](const MissingAxis& axis) { return has_unit(axis, columns[k], false); }))
+    if (!counts_rows(columns[k]) && std::any_of(axes.begin(), axes.end(), [&](const MissingAxis& axis) {
+          return has_unit(axis, columns[k], false);
+        }))
       order.push_back(k);
   return in_order(order);
 }

@@ -13,11 +13,12 @@ namespace {
 using WordSet = std::set<std::string, std::less<>>;
 
 const WordSet kTargetWords = {
-    "soll",         "sollwert", "target",       "nominal",      "cmd",      "command",      "commanded",
-    "position",     "pos",      "set",          "ziel",         "achse",    "axis",         "machine",
-    "maschine",     "nom",      "sollposition", "zielposition", "nennmaß",  "nennmass",     "nennwert",
-    "nennposition", "sollmaß",  "sollmass",     "kommandiert",  "befohlen", "programmiert", "programmed",
-    "demand",       "setpoint", "vorgabe",      "vorgabewert",  "cote",     "consigne",     "cible"};
+    "soll",        "sollwert",    "target",       "nominal",      "cmd",          "command",
+    "commanded",   "position",    "pos",          "set",          "ziel",         "achse",
+    "axis",        "machine",     "maschine",     "nom",          "sollposition", "zielposition",
+    "nennmaß",     "nennmass",    "nennwert",     "nennposition", "sollmaß",      "sollmass",
+    "kommandiert", "befohlen",    "programmiert", "programmed",   "demand",       "setpoint",
+    "vorgabe",     "vorgabewert", "weg",          "cote",         "consigne",     "cible"};
 const WordSet kMeasuredWords = {
     "ist",  "istwert",   "istposition", "istmaß",       "istmass",  "measured",   "actual", "act",
     "meas", "mess",      "messwert",    "gemessen",     "reading",  "tracker",    "laser",  "read",
@@ -43,9 +44,10 @@ const WordSet kStraightnessWords = {"straightness", "geradheit", "geradheitsabwe
 const WordSet kTiltWords = {"pitch",      "yaw",        "roll",   "nicken", "nickwinkel", "gieren",
                             "gierwinkel", "rollwinkel", "rollen", "wanken", "kippen",     "kippwinkel"};
 /// Headings of a column that counts or names its rows.
-const WordSet kCountingWords = {"nr",    "no",    "num",    "nummer", "number", "index", "idx",       "id",
-                                "lfd",   "punkt", "punkte", "point",  "points", "pt",    "messpunkt", "row",
-                                "zeile", "#",     "n",      "pos.nr", "posnr",  "sample"};
+const WordSet kCountingWords = {"nr",        "no",   "num",   "nummer", "number", "index",  "idx",
+                                "id",        "lfd",  "punkt", "punkte", "point",  "points", "pt",
+                                "messpunkt", "row",  "zeile", "#",      "n",      "pos.nr", "posnr",
+                                "sample",    "pose", "step",  "schritt"};
 const WordSet kStatisticWords = {
     "mittel", "mittelwert", "mittelwerte", "mittlere", "mittl", "mean", "average", "avg", "mw",
     "durchschnitt", "stdev", "stdabw", "stabw", "spannweite", "standardabweichung", "means", "averages",
@@ -154,9 +156,16 @@ bool says_tilt(const std::string& word) { return kTiltWords.contains(word); }
 bool says_counting(const std::string& word) { return kCountingWords.contains(word); }
 bool says_deviation(const std::string& word) { return kDeviationWords.contains(word); }
 
+bool is_failed_formula(const std::string& cell) {
+  static const WordSet kErrors = {"#bezug!",  "#ref!",    "#div/0!", "#wert!",     "#value!",
+                                  "#name?",   "#zahl!",   "#num!",   "#null!",     "#leer!",
+                                  "#valeur!", "#nombre!", "#spill!", "#überlauf!", "#calc!"};
+  return kErrors.contains(text::in_small_letters(cell));
+}
+
 bool is_missing(const std::string& cell) {
   static const WordSet kMarks = {"", "-", "--", "---", "n/a", "na", "#nv", "#n/a", "nan"};
-  return kMarks.contains(text::in_small_letters(cell));
+  return kMarks.contains(text::in_small_letters(cell)) || is_failed_formula(cell);
 }
 
 bool is_axis_direction(std::string_view word) {

@@ -49,7 +49,9 @@ bool says_tilt(const std::string& word);
 /// True for a column with a number or a name of each row: "Nr".
 bool says_counting(const std::string& word);
 
-/// True for a cell without a value: empty, "-", "n/a" …
+/// True for the text that a spreadsheet shows for a failed formula: "#BEZUG!", "#DIV/0!".
+bool is_failed_formula(const std::string& cell);
+/// True for a cell without a value: empty, a failed formula, "-", "n/a" …
 bool is_missing(const std::string& cell);
 
 /// True for the direction of an axis: "X+" is the direction + of the axis X.
