@@ -40,6 +40,7 @@ TEST(DirectionsOfRuns, DoNotDependOnAColumnAtTheLeft) {
            {"lfd. Nr.;", {"1;", "2;", "3;", "4;"}},
            {"Zeit [min];", {"0;", "2;", "4;", "6;"}},
            {"Temp. [°C];", {"20,0;", "20,0;", "20,1;", "20,2;"}},
+           {"Pos.;", {"1;", "2;", "3;", "4;"}},
            {"Punkt;", {"P1;", "P2;", "P3;", "P4;"}},
        }) {
     const std::string list[4] = {cells[0], cells[1], cells[2], cells[3]};

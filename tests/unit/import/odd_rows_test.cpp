@@ -93,6 +93,11 @@ TEST(OddHeadings, ACountBesideThePositionsIsNoPosition) {
               StartsWith("Pos,X[mm],x[mm]\n1,0,-0.0032\n2,50,49.9994\n"));
 }
 
+TEST(OddHeadings, TheRemedyForPositionsNamesNoCount) {
+  EXPECT_THAT(read("Pos.;Strecke [mm];Abw. [µm]\n1;0;-3,2\n2;50;-0,6\n3;100;1,3\n"),
+              HasSubstr("--deviation \"X=Abw. [µm]\" --column \"X=Strecke [mm]\""));
+}
+
 TEST(OddHeadings, ThePointOfARobotIsProposed) {
   const std::string rows =
       "Pose,Base,Shoulder,Elbow,X [mm],Y [mm],Z [mm]\n1,10,20,30,100,200,300\n"

@@ -257,9 +257,22 @@ std::optional<std::size_t> column_of_positions(const sheet::SheetTable& table) {
   return std::nullopt;
 }
 
-std::string option_of_positions(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
-                                const Guess& guess, std::size_t deviation) {
-  std::optional<std::size_t> nearest;
+bool counts_rows(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
+  constexpr std::size_t kFewest = 3;  // fewer rows agree by chance
+  std::size_t count = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    if (sheet::is_blank(sheet.rows[row])) continue;
+    const auto value = sheet::number_at(sheet, row, column);
+    if (!value || *value != static_cast<double>(++count)) return false;
+  }
+  return count >= kFewest && table.headings[column].unit.empty() &&
+         table.headings[column].unknown_unit.empty();
+}
+
+std::string option_of_positions(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                const std::vector<SheetColumn>& columns, const Guess& guess,
+                                std::size_t deviation) {
+  std::optional<std::size_t> nearest, sized;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name)) continue;
@@ -267,8 +280,12 @@ std::string option_of_positions(const sheet::SheetTable& table, const std::vecto
     const bool target = std::any_of(words.begin(), words.end(), [](const std::string& word) {
       return says_target(text::in_small_letters(word));
     });
-    if (target && (!nearest || k < deviation)) nearest = k;
+    const auto unit = column.unit.empty() ? std::nullopt : format::find_unit(column.unit);
+    const bool length = unit && (unit->dimension == format::Dimension::kLength || is_angle(column.unit));
+    if (target && !counts_rows(sheet, table, k) && (!nearest || k < deviation)) nearest = k;
+    if (length && k < deviation) sized = k;
   }
+  if (!nearest) nearest = sized;
   if (!nearest) return "--set \"X[mm]=0\"";
   return fmt::format("--column \"X{}={}\"", columns[*nearest].unit.empty() ? "[mm]" : "",
                      table.headings[*nearest].text);

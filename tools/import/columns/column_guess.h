@@ -107,11 +107,15 @@ class Guess {
 /// Returns the first column of positions by its heading; nullopt if no heading names a position.
 std::optional<std::size_t> column_of_positions(const sheet::SheetTable& table);
 
+/// True if a column has no unit, and its values are 1, 2, 3 … from row to row: the number of the row.
+bool counts_rows(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column);
+
 /// Returns the option that makes a column the positions of the axis X for a deviation whose axis is not
-/// known:
-/// --column "X=Pos 1 [mm]", or --set "X[mm]=0" if no heading has a word for a position. The nearest column to
-/// the left of the deviation has its positions.
-std::string option_of_positions(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
-                                const Guess& guess, std::size_t deviation);
+/// known: --column "X=Pos 1 [mm]". The nearest column to the left of the deviation has its positions, first
+/// of the columns with a word for a position that do not count the rows, then of the columns in a unit of
+/// length or angle; --set "X[mm]=0" if the table has none.
+std::string option_of_positions(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                const std::vector<SheetColumn>& columns, const Guess& guess,
+                                std::size_t deviation);
 
 }  // namespace vernier::importer

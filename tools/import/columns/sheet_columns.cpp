@@ -206,13 +206,13 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       leave_column(column, fmt::format("the table has no position of {}: state the position, for example {}",
                                        column.name, set_position(column)));
     else if (deviation && column.name.empty())
-      leave_column(column,
-                   fmt::format("the axis of this deviation is not known: state the axis, --deviation "
-                               "\"X={}\"{}",
-                               table.headings[k].text,
-                               positions.empty() ? " " + option_of_positions(table, columns, guess, k) +
-                                                       " (with the position of X)"
-                                                 : ""));
+      leave_column(
+          column, fmt::format("the axis of this deviation is not known: state the axis, --deviation "
+                              "\"X={}\"{}",
+                              table.headings[k].text,
+                              positions.empty() ? " " + option_of_positions(sheet, table, columns, guess, k) +
+                                                      " (with the position of X)"
+                                                : ""));
     else if (deviation && !reading_of(column.name))
       leave_column(column,
                    fmt::format("no reading of a measurement file is along {}: state the axis that it is "

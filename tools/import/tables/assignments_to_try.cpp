@@ -123,7 +123,7 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name) ||
         guess.is_motion(column.name) || is_sense(column.name) || is_known_name(column.name) ||
-        names_counting(table.headings[k]))
+        names_counting(table.headings[k]) || counts_rows(sheet, table, k))
       continue;
     Guess::Bare bare = Guess::bare(table.headings[k].name);
     if (bare == Guess::Bare::kDisplay && shown) bare = Guess::Bare::kTarget;
@@ -156,7 +156,7 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
     return fmt::format("{}--deviation \"{}{}={}\"{}{}", position, name, open->unit.empty() ? "[um]" : "",
                        table.headings[at_open].text,
                        position.empty() && axis == columns.end()
-                           ? " " + option_of_positions(table, columns, guess, at_open)
+                           ? " " + option_of_positions(sheet, table, columns, guess, at_open)
                            : "",
                        open->unit.empty() ? "; [um] is an example: state the unit of the values" : "");
   // A column that was left out has the options that read it.

@@ -37,10 +37,12 @@ std::size_t positions_of_runs(const sheet::Sheet& sheet, const sheet::SheetTable
              find_heading(table, one.heading) == k;
     });
   };
-  const auto named = [&](std::size_t k) {
+  const auto of_axis = [&](std::size_t k) {
     const SheetColumn column = guess.column(table.headings[k]);
-    return (column.use == SheetColumn::Use::kColumn && guess.is_axis(column.name)) ||
-           Guess::bare(table.headings[k].name) == Guess::Bare::kTarget;
+    return column.use == SheetColumn::Use::kColumn && guess.is_axis(column.name) && varies(sheet, table, k);
+  };
+  const auto named = [&](std::size_t k) {
+    return Guess::bare(table.headings[k].name) == Guess::Bare::kTarget && !counts_rows(sheet, table, k);
   };
   const auto moves = [&](std::size_t k) { return varies(sheet, table, k); };
   const auto sized = [&](std::size_t k) {
@@ -48,6 +50,7 @@ std::size_t positions_of_runs(const sheet::Sheet& sheet, const sheet::SheetTable
   };
   const auto named_and_moves = [&](std::size_t k) { return named(k) && moves(k); };
   auto found = std::find_if(others.begin(), others.end(), given);
+  if (found == others.end()) found = std::find_if(others.begin(), others.end(), of_axis);
   if (found == others.end()) found = std::find_if(others.begin(), others.end(), named_and_moves);
   if (found == others.end()) found = std::find_if(others.begin(), others.end(), named);
   if (found == others.end()) found = std::find_if(others.begin(), others.end(), sized);

@@ -13,8 +13,9 @@ namespace vernier::importer {
 /// Returns the column whose values are the positions of the rows, in a table with one column for each run.
 /// `others`: the columns that are not runs, at least one. Columns that count the rows, times, temperatures
 /// and words are no positions. The first of these rules that finds a column applies: the user assigned an
-/// axis to it; its heading names a position, and the values change from row to row; its heading names a
-/// position; its values are lengths or angles that change; it is the first column.
+/// axis to it; its heading names an axis, and the values change; its heading names a position, and the
+/// values change; its heading names a position; its values are lengths or angles that change; it is the
+/// first column.
 std::size_t positions_of_runs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                               const std::vector<std::size_t>& others, const SheetWishes& wishes);
 
