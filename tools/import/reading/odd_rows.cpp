@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -60,20 +61,22 @@ void leave_state_lines(sheet::Sheet& sheet, const sheet::SheetTable& table) {
 void note_repeated_readings(sheet::Sheet& sheet, const sheet::SheetTable& table) {
   const auto position = table.has_headings ? column_of_positions(table) : std::nullopt;
   if (!position) return;
+  std::map<double, std::vector<std::size_t>> rows_at;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+    if (const auto at = sheet::number_at(sheet, row, *position)) rows_at[*at].push_back(row);
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const auto at = sheet::number_at(sheet, row, *position);
     const auto& cells = sheet.rows[row];
     const auto remark = std::find_if(cells.begin(), cells.end(), names_repetition);
     if (!at || remark == cells.end()) continue;
-    for (std::size_t other = table.first_data; other < sheet.rows.size(); ++other) {
-      if (other == row || sheet::number_at(sheet, other, *position) != at) continue;
-      sheet.notes.push_back(
-          fmt::format("line {}: the remark \"{}\", and line {} has the same position {}: both rows are read; "
-                      "if one of the two "
-                      "is not valid, write \"invalid\" into its row",
-                      sheet.line[row], *remark, sheet.line[other], cells[*position]));
-      break;
-    }
+    const std::vector<std::size_t>& same = rows_at.at(*at);
+    if (same.size() < 2) continue;
+    sheet.notes.push_back(
+        fmt::format("line {}: the remark \"{}\", and line {} has the same position {}: both rows are read; "
+                    "if one of the two is "
+                    "not valid, write \"invalid\" into its row",
+                    sheet.line[row], *remark, sheet.line[same.front() == row ? same[1] : same.front()],
+                    cells[*position]));
   }
 }
 

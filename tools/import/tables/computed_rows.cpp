@@ -156,22 +156,31 @@ namespace {
 /// only if its numbers are statistics. Otherwise the word is a remark about a measurement, or, in a column
 /// that has a value in most rows, the kind of the row is not known.
 enum class Row { kComputed, kRemark, kUnknown };
-Row kind_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t row, std::size_t k,
-            std::size_t since) {
-  if (!has_number(sheet, row, position_columns(table)) || agrees_with_statistics(sheet, table, row, since))
-    return Row::kComputed;
-  std::size_t filled = 0;
-  for (std::size_t other = table.first_data; other < sheet.rows.size(); ++other)
-    filled += sheet.rows[other][k].empty() ? 0 : 1;
-  return 2 * filled > sheet.rows.size() - table.first_data ? Row::kUnknown : Row::kRemark;
+
+/// For each column: true if it has a value in most rows.
+std::vector<bool> filled_columns(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  std::vector<bool> filled;
+  for (std::size_t k = 0; k < sheet.rows.front().size(); ++k) {
+    std::size_t cells = 0;
+    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+      cells += sheet.rows[row][k].empty() ? 0 : 1;
+    filled.push_back(2 * cells > sheet.rows.size() - table.first_data);
+  }
+  return filled;
 }
 
 /// Takes the rows out of `computed` that are measurements with a remark, with a note for each, and refuses
 /// the table if the kind of a row is not known.
 void keep_measurements(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<Computed>& computed) {
+  constexpr std::size_t kMost = 100;  // computed rows: of more, each is about the rows since the one before
+  const bool few = computed.size() <= kMost;
+  const std::vector<std::size_t> positions = position_columns(table);
+  const std::vector<bool> filled = filled_columns(sheet, table);
   std::size_t since = table.first_data;
   std::erase_if(computed, [&](const Computed& one) {
-    const Row kind = kind_of(sheet, table, one.row, one.column, since);
+    const bool is_computed =
+        !has_number(sheet, one.row, positions) || agrees_with_statistics(sheet, table, one.row, since, few);
+    const Row kind = is_computed ? Row::kComputed : filled[one.column] ? Row::kUnknown : Row::kRemark;
     since = one.row + 1;
     if (kind == Row::kUnknown)
       throw text::InputError(

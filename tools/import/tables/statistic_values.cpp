@@ -41,9 +41,11 @@ std::vector<double> statistics_of(std::vector<double> values) {
 
 /// True if `value` is one of these numbers, to its last digit.
 bool among(double value, double digit, const std::vector<double>& numbers) {
-  constexpr double kRounding = 1.01;  // of the printed value, and of a mean that was rounded before
+  // Half a digit of the printed value; as much again if the values above are rounded too. Whole numbers are
+  // positions, and these are not rounded.
+  const double rounding = digit < 1 ? 1.01 : 0.51;
   return std::any_of(numbers.begin(), numbers.end(),
-                     [&](double other) { return std::abs(value - other) <= kRounding * digit; });
+                     [&](double other) { return std::abs(value - other) <= rounding * digit; });
 }
 
 bool agrees(const sheet::Sheet& sheet, std::size_t columns, std::size_t row, std::size_t first) {
@@ -83,9 +85,9 @@ bool has_number(const sheet::Sheet& sheet, std::size_t row, const std::vector<st
 }
 
 bool agrees_with_statistics(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t row,
-                            std::size_t since) {
+                            std::size_t since, bool all_rows) {
   const std::size_t columns = std::min(table.headings.size(), sheet.rows[row].size());
-  return agrees(sheet, columns, row, table.first_data) || agrees(sheet, columns, row, since);
+  return agrees(sheet, columns, row, since) || (all_rows && agrees(sheet, columns, row, table.first_data));
 }
 
 }  // namespace vernier::importer

@@ -16,9 +16,9 @@ bool has_number(const sheet::Sheet& sheet, std::size_t row, const std::vector<st
 
 /// True if each number of the row is a statistic of the numbers above it in its column, to the last digit:
 /// the mean, the standard deviation (n - 1 or n), a multiple of it, the largest, smallest or median value,
-/// the range, the sum, the rms or the count. The numbers above are those of all rows, or those since the row
-/// `since`.
+/// the range, the sum, the rms or the count. The numbers above are those since the row `since`, or, with
+/// `all_rows`, also those of all rows.
 bool agrees_with_statistics(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t row,
-                            std::size_t since);
+                            std::size_t since, bool all_rows);
 
 }  // namespace vernier::importer
