@@ -4,6 +4,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/model/plan_kinds.h"
+#include "tools/fit/files/file_noise.h"
 #include "tools/kinematics/at.h"
 #include "tools/plan/accuracy/accuracy_plan.h"
 #include "tools/plan/sheets.h"

@@ -16,23 +16,28 @@ namespace {
 /// More moves than these are not tested: their matrix of scalar products would take longer than the search.
 constexpr std::size_t kMostMoves = 500;
 
-/// Returns one column for each move of an axis between its reversals, in the order of the file: the
-/// whitened readings per unit of an offset along the axis.
-Eigen::MatrixXd columns_of_moves(const Evidence& evidence, std::size_t axis, std::size_t place) {
-  const std::vector<std::size_t>& rows = evidence.rows();
-  std::vector<Eigen::Index> move(rows.size());
+/// Returns the number of the move of an axis between its reversals for each fit observation, in the order of
+/// the file.
+std::vector<Eigen::Index> moves_of(const Evidence& evidence, std::size_t axis) {
+  std::vector<Eigen::Index> moves;
   int sense = 0;
   Eigen::Index last = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const int now = evidence.sense_of(axis, rows[i]);
+  for (const std::size_t row : evidence.rows()) {
+    const int now = evidence.sense_of(axis, row);
     if (now * sense < 0) ++last;
     if (now != 0) sense = now;
-    move[i] = last;
+    moves.push_back(last);
   }
+  return moves;
+}
+
+/// Returns one column for each move: the whitened readings per unit of an offset at a location.
+Eigen::MatrixXd columns_of(const Evidence& evidence, const std::vector<Eigen::Index>& moves,
+                           std::size_t place) {
   const auto response = evidence.response(place);
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(response.size(), last + 1);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    columns(static_cast<Eigen::Index>(i), move[i]) = response[static_cast<Eigen::Index>(i)];
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(response.size(), moves.back() + 1);
+  for (Eigen::Index i = 0; i < response.size(); ++i)
+    columns(i, moves[static_cast<std::size_t>(i)]) = response[i];
   evidence.whiten(columns);
   return columns;
 }
@@ -113,11 +118,33 @@ Evidence with_independent_noise(const Evidence& evidence) {
   return independent;
 }
 
+/// An axis with moves that can have a variance of their own.
+struct MovingAxis {
+  std::size_t axis = 0, place = 0;  // index of the axis, and of its own location
+  std::vector<Eigen::Index> moves;  // of each fit observation
+};
+
+std::vector<MovingAxis> moving_axes(const Evidence& evidence) {
+  std::vector<MovingAxis> list;
+  const effects::AxisPlaces axes(evidence.machine());
+  for (std::size_t axis = 0; axis < evidence.machine().axes.size(); ++axis) {
+    const std::optional<effects::DofPlace> place = axes.own(axis);
+    if (!place) continue;
+    MovingAxis one{axis, evidence.index_of(*place), moves_of(evidence, axis)};
+    const auto count = static_cast<std::size_t>(one.moves.back() + 1);
+    if (static_cast<double>(count) >= evidence.thresholds().shape.moves && count <= kMostMoves)
+      list.push_back(std::move(one));
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string doubt_of_moves(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                            std::size_t item) {
   if (!evidence.noise_known()) return {};
+  const std::vector<MovingAxis> axes = moving_axes(evidence);
+  if (axes.empty()) return {};
   const Evidence independent = with_independent_noise(evidence);
   if (!independent.observations_are_independent()) return {};
   std::vector<std::size_t> others;
@@ -131,19 +158,14 @@ std::string doubt_of_moves(const Evidence& evidence, const Pool& pool, const std
   const Eigen::MatrixXd beside = basis_of(independent, pool, others);
   const Eigen::VectorXd without = residual_beside(independent, beside);
   const double limit = with_item + evidence.thresholds().acceptance.distance;
-  const effects::AxisPlaces axes(evidence.machine());
-  for (std::size_t axis = 0; axis < evidence.machine().axes.size(); ++axis) {
-    const std::optional<effects::DofPlace> place = axes.own(axis);
-    if (!place) continue;
-    const Eigen::MatrixXd moves = columns_of_moves(independent, axis, evidence.index_of(*place));
-    const auto count = static_cast<std::size_t>(moves.cols());
-    if (static_cast<double>(count) < evidence.thresholds().shape.moves || count > kMostMoves) continue;
-    const double decrease = decrease_by(directions_of(independent, moves, beside, without));
+  for (const MovingAxis& one : axes) {
+    const double decrease = decrease_by(
+        directions_of(independent, columns_of(independent, one.moves, one.place), beside, without));
     if (without.squaredNorm() - decrease + independent.log_determinant() + price > limit) continue;
     return fmt::format(
         "{} explains the readings no better than an offset of {} that changes at each of {} reversals "
         "(stick-slip)",
-        pool.candidate(item).spoken, evidence.machine().axes[axis].name, count - 1);
+        pool.candidate(item).spoken, evidence.machine().axes[one.axis].name, one.moves.back());
   }
   return {};
 }
