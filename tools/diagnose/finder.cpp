@@ -407,18 +407,9 @@ void Finder::search_beside_chosen() {
 
 Eigen::MatrixXd Finder::raw_columns(const std::vector<std::size_t>& items) const {
   std::vector<Eigen::MatrixXd> parts;
-  Eigen::Index count = 0;
-  for (const std::size_t item : items) {
+  for (const std::size_t item : items)
     parts.push_back(evidence_.raw_columns(pool_.candidate(item), pool_[item].scored.scanned));
-    count += parts.back().cols();
-  }
-  Eigen::MatrixXd all(evidence_.residual().size(), count);
-  Eigen::Index at = 0;
-  for (const Eigen::MatrixXd& part : parts) {
-    all.middleCols(at, part.cols()) = part;
-    at += part.cols();
-  }
-  return all;
+  return maths::side_by_side(evidence_.residual().size(), parts);
 }
 
 void Finder::search_under(const fit::NoiseModel& noise) {
@@ -951,8 +942,8 @@ double Finder::evidence_for(std::size_t item, const std::vector<double>& scanned
 
 double Finder::gain_at(std::size_t item, const std::vector<double>& scanned) const {
   const Eigen::MatrixXd beside = maths::orthonormal(pool_.columns(without(item)), 1e-6, nullptr);
-  Eigen::MatrixXd columns = ColumnMaker(evidence_).columns(pool_.candidate(item), scanned);
-  columns -= evidence_.absorbed() * (evidence_.absorbed().transpose() * columns);
+  Eigen::MatrixXd columns =
+      evidence_.beside_model(ColumnMaker(evidence_).columns(pool_.candidate(item), scanned));
   columns -= beside * (beside.transpose() * columns);
   return (maths::orthonormal(columns, 1e-6, nullptr).transpose() * evidence_.residual()).squaredNorm();
 }

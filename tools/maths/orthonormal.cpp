@@ -20,4 +20,16 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least, std::v
   return basis.leftCols(count);
 }
 
+Eigen::MatrixXd side_by_side(Eigen::Index rows, const std::vector<Eigen::MatrixXd>& parts) {
+  Eigen::Index count = 0;
+  for (const Eigen::MatrixXd& part : parts) count += part.cols();
+  Eigen::MatrixXd all(rows, count);
+  Eigen::Index at = 0;
+  for (const Eigen::MatrixXd& part : parts) {
+    all.middleCols(at, part.cols()) = part;
+    at += part.cols();
+  }
+  return all;
+}
+
 }  // namespace vernier::maths

@@ -10,4 +10,7 @@ namespace vernier::maths {
 /// share `least` of its length remains. `kept`: receives the indices of the linearly independent columns.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double least, std::vector<std::size_t>* kept);
 
+/// Returns the columns of all parts, one part after another. `rows`: rows of each part.
+Eigen::MatrixXd side_by_side(Eigen::Index rows, const std::vector<Eigen::MatrixXd>& parts);
+
 }  // namespace vernier::maths

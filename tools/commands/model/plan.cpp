@@ -217,10 +217,7 @@ void run_plan(const PlanArguments& arguments) {
   if (arguments.separate.empty()) return run_accuracy_plan(arguments);
   const std::string text = text::read_file(arguments.machine);
   const model::Machine machine = model::parse_machine(text, arguments.machine);
-  model::Measurement m = model::read_measurement(arguments.measurements, machine,
-                                                 simulate::corrections_of_images(arguments.images));
-  for (const fit::FileNoise& noise : fit::estimate_file_noise(machine, m))
-    fmt::print(stderr, "note: {}\n", noise.sentence());
+  const model::Measurement m = rows_of_plan(arguments, machine);
   const std::vector<effects::Effect> effects = effects::effect_catalogue(arguments.effects);
   const std::vector<std::string> hypotheses = plan::split_hypotheses(arguments.separate, effects);
   plan::PlanOptions options;
@@ -244,6 +241,14 @@ void run_plan(const PlanArguments& arguments) {
 }
 
 }  // namespace
+
+model::Measurement rows_of_plan(const PlanArguments& arguments, const model::Machine& machine) {
+  model::Measurement rows = model::read_measurement(arguments.measurements, machine,
+                                                    simulate::corrections_of_images(arguments.images));
+  for (const fit::FileNoise& noise : fit::estimate_file_noise(machine, rows))
+    fmt::print(stderr, "note: {}\n", noise.sentence());
+  return rows;
+}
 
 nlohmann::ordered_json pose_json(const model::Machine& machine, const model::States& states,
                                  std::size_t row) {

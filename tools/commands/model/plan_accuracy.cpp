@@ -4,11 +4,9 @@
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/model/plan_kinds.h"
-#include "tools/fit/files/file_noise.h"
 #include "tools/kinematics/at.h"
 #include "tools/plan/accuracy/accuracy_plan.h"
 #include "tools/plan/sheets.h"
-#include "tools/simulate/corrected.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -44,10 +42,7 @@ std::vector<model::WorkRange> region_of(const model::Machine& machine, const std
 
 plan::Knowledge knowledge_from(const PlanArguments& arguments, const model::Machine& machine) {
   if (arguments.measurements.empty()) return plan::knowledge_of(machine);
-  model::Measurement rows = model::read_measurement(arguments.measurements, machine,
-                                                    simulate::corrections_of_images(arguments.images));
-  for (const fit::FileNoise& noise : fit::estimate_file_noise(machine, rows))
-    fmt::print(stderr, "note: {}\n", noise.sentence());
+  const model::Measurement rows = rows_of_plan(arguments, machine);
   const fit::FitResult fitted = fit::fit(machine, rows);
   if (!fitted.absurd.empty()) throw text::LimitNotMet(fitted.absurd);
   if (!fitted.converged) throw text::LimitNotMet("the fit of the measured rows did not converge");

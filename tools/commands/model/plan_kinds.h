@@ -7,6 +7,7 @@
 
 #include "tools/commands/judge/part_kinds.h"
 #include "tools/model/machine.h"
+#include "tools/model/measurement.h"
 #include "tools/model/states.h"
 #include "tools/plan/standard/positioning_test.h"
 
@@ -27,6 +28,10 @@ struct PlanArguments {
 
 /// Returns one pose of a plan as JSON: axes and approach directions.
 nlohmann::ordered_json pose_json(const model::Machine& machine, const model::States& states, std::size_t row);
+
+/// Returns the measurement rows of a plan. Readings without u beside readings with u have an estimate
+/// (fit::estimate_file_noise), with a note on stderr for each.
+model::Measurement rows_of_plan(const PlanArguments& arguments, const model::Machine& machine);
 
 /// Writes the G-code program and the measurement file of a positioning test (ISO 230-2).
 void run_positioning_plan(const PlanArguments& arguments);

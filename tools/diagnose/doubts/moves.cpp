@@ -9,6 +9,7 @@
 
 #include "tools/effects/places.h"
 #include "tools/maths/golden.h"
+#include "tools/maths/orthonormal.h"
 
 namespace vernier::diagnose {
 namespace {
@@ -50,7 +51,7 @@ struct Direction {
 /// Returns independent combinations of the columns of moves, beside the orthonormal columns of other effects.
 std::vector<Direction> directions_of(const Evidence& evidence, Eigen::MatrixXd columns,
                                      const Eigen::MatrixXd& beside, const Eigen::VectorXd& residual) {
-  columns -= evidence.absorbed() * (evidence.absorbed().transpose() * columns);
+  columns = evidence.beside_model(columns);
   columns -= beside * (beside.transpose() * columns);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(columns.transpose() * columns);
   const Eigen::VectorXd products = eigen.eigenvectors().transpose() * (columns.transpose() * residual);
@@ -89,19 +90,9 @@ double decrease_by(const std::vector<Direction>& moves) {
 /// Returns orthonormal columns of several items beside the free parameters of the model.
 Eigen::MatrixXd basis_of(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items) {
   std::vector<Eigen::MatrixXd> parts;
-  Eigen::Index count = 0;
-  for (const std::size_t item : items) {
+  for (const std::size_t item : items)
     parts.push_back(evidence.columns(pool.candidate(item), pool[item].scored.scanned));
-    count += parts.back().cols();
-  }
-  Eigen::MatrixXd columns(evidence.residual().size(), count);
-  Eigen::Index at = 0;
-  for (const Eigen::MatrixXd& part : parts) {
-    columns.middleCols(at, part.cols()) = part;
-    at += part.cols();
-  }
-  columns -= evidence.absorbed() * (evidence.absorbed().transpose() * columns);
-  return AcceptedColumns(columns).basis;
+  return AcceptedColumns(evidence.beside_model(maths::side_by_side(evidence.residual().size(), parts))).basis;
 }
 
 /// Returns the residual beside orthonormal columns.
@@ -112,6 +103,7 @@ Eigen::VectorXd residual_beside(const Evidence& evidence, const Eigen::MatrixXd&
 /// Returns the evidence with the own noise of every observation, and nothing that observations share.
 Evidence with_independent_noise(const Evidence& evidence) {
   Evidence independent = evidence;
+  if (evidence.noise().independent()) return independent;
   fit::NoiseModel noise;
   noise.own = evidence.noise().own;
   independent.assume(noise);

@@ -39,11 +39,6 @@ int positions_read(Eigen::VectorXd u, double apart) {
   return count;
 }
 
-Eigen::MatrixXd beyond_model(const Evidence& evidence, const Eigen::MatrixXd& columns) {
-  const Eigen::MatrixXd& q = evidence.absorbed();
-  return columns - q * (q.transpose() * columns);
-}
-
 /// Line and half-waves over the range, as columns of the readings of a location.
 Eigen::MatrixXd half_waves(const Evidence& evidence, const effects::DofPlace& place, const Eigen::VectorXd& u,
                            int count) {
@@ -71,7 +66,7 @@ Eigen::MatrixXd moved(const Evidence& evidence, const Pool& pool, std::size_t it
     all.middleCols(static_cast<Index>(i) * here.cols(), here.cols()) =
         (evidence.columns(candidate, there) - here) / kStep;
   }
-  return beyond_model(evidence, all);
+  return evidence.beside_model(all);
 }
 
 struct Jump {
@@ -122,10 +117,9 @@ struct OwnPart {
 OwnPart own_part(const Evidence& evidence, Eigen::MatrixXd columns, const Eigen::MatrixXd& beside) {
   const double least_own = evidence.thresholds().shape.own;
   const Eigen::VectorXd before = columns.colwise().norm();
-  const Eigen::MatrixXd& q = evidence.absorbed();
   const Eigen::MatrixXd others = maths::orthonormal(beside, 1e-6, nullptr);
   for (int pass = 0; pass < 2; ++pass) {
-    columns -= q * (q.transpose() * columns);
+    columns = evidence.beside_model(columns);
     columns -= others * (others.transpose() * columns);
   }
   for (Index j = 0; j < columns.cols(); ++j)
@@ -293,7 +287,7 @@ std::string doubt_of_reversal(const Evidence& evidence, const Pool& pool,
   usual << answer * positions(evidence, *choice.axis).array(), answer * dir;
   evidence.whiten(usual);
   Eigen::MatrixXd beside(answer.size(), beside_it.cols() + usual.cols());
-  beside << beside_it, beyond_model(evidence, usual);
+  beside << beside_it, evidence.beside_model(usual);
   const double found = own_part(evidence, pool.columns(pieces), beside).explained();
   for (std::size_t one = 0; one < pool.size(); ++one) {
     const effects::Choice& other = pool.candidate(one).choice;
@@ -405,7 +399,7 @@ AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const 
   shape.seen = gain_of(evidence, waves, beside).rank;
   shape.own_table = shape.seen < std::min(most, read - 1);
   shape.resolved = (range.high - range.low) / slow_count;
-  const Eigen::MatrixXd slow = beyond_model(evidence, waves.leftCols(slow_count + 1));
+  const Eigen::MatrixXd slow = evidence.beside_model(waves.leftCols(slow_count + 1));
   Eigen::MatrixXd held(slow.rows(), beside.cols() + slow.cols());
   held << beside, slow;
   const Gain all = gain_of(evidence, waves.leftCols(2 * slow_count + 1), beside);

@@ -411,7 +411,7 @@ class Enumerator {
         columns.col(static_cast<Eigen::Index>(d)) =
             evidence_.response(evidence_.index_of({workpiece, last.transform, d}));
       const Eigen::VectorXd before = columns.colwise().norm();
-      columns -= evidence_.absorbed() * (evidence_.absorbed().transpose() * columns);
+      columns = evidence_.beside_model(columns);
       for (Eigen::Index d = 0; d < 3; ++d)
         if (columns.col(d).norm() <= evidence_.thresholds().shape.own * before[d]) columns.col(d).setZero();
       const Eigen::Index own = maths::orthonormal(columns, evidence_.thresholds().shape.own, nullptr).cols();

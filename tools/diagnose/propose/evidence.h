@@ -63,6 +63,10 @@ class Evidence {
   const Eigen::VectorXd& residual() const { return residual_; }
   /// Returns orthonormal columns that span the changes of the readings by the free parameters of the model.
   const Eigen::MatrixXd& absorbed() const { return absorbed_; }
+  /// Returns whitened columns without the part that the free parameters of the model explain.
+  Eigen::MatrixXd beside_model(const Eigen::MatrixXd& columns) const {
+    return columns - absorbed_ * (absorbed_.transpose() * columns);
+  }
   bool noise_known() const { return noise_known_; }
   double chi_square() const { return residual_.squaredNorm(); }
   double freedom() const { return static_cast<double>(residual_.size() - absorbed_.cols()); }

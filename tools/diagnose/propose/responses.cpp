@@ -160,7 +160,7 @@ class Structure {
       all.col(static_cast<Eigen::Index>(i)) =
           maker.columns(effects::make_candidate(machine_, axes_, choice_of({summands_[i]})), {});
     const Eigen::RowVectorXd before = all.colwise().norm();
-    all -= evidence_.absorbed() * (evidence_.absorbed().transpose() * all);
+    all = evidence_.beside_model(all);
     all -= beside * (beside.transpose() * all);
     for (Eigen::Index j = 0; j < all.cols(); ++j) {
       const double norm = all.col(j).norm();

@@ -190,13 +190,8 @@ class Scanner::Part {
   }
   void end_batch() {
     if (points_.empty()) return;
-    Eigen::MatrixXd columns(target_.residual.size(), width_);
-    Eigen::Index at = 0;
-    for (const Eigen::MatrixXd& raw : raw_) {
-      columns.middleCols(at, raw.cols()) = raw;
-      at += raw.cols();
-    }
-    ProjectedBatch batch = project(scanner_.evidence_, std::move(points_), std::move(columns));
+    ProjectedBatch batch =
+        project(scanner_.evidence_, std::move(points_), maths::side_by_side(target_.residual.size(), raw_));
     scan(batch, target_.directions.transpose() * batch.columns);
     if (batch.columns.size() <= room_) {
       room_ -= batch.columns.size();

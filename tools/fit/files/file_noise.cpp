@@ -90,6 +90,12 @@ double sum_of_squares(const std::vector<double>& residuals) {
   return sum;
 }
 
+/// Estimates u from residuals with the degrees of freedom of `noise`.
+void take_residuals(const std::vector<double>& left, FileNoise& noise) {
+  noise.u = std::max(kLeastEstimate, std::sqrt(sum_of_squares(left) / noise.freedom));
+  noise.std = noise.u / std::sqrt(2 * noise.freedom);
+}
+
 /// A first value that is too large rather than too small: the residual of the given machine, with the
 /// instrument placed for the file.
 double first_value(const model::Machine& machine, const model::Measurement& rows, const FileNoise& noise) {
@@ -156,8 +162,7 @@ double estimate_file(const model::Measurement& rows, const FitResult& fit, FileN
   }
   if (noise.freedom < kLeastFreedom) refuse_few_readings(noise, left.size());
   const double before = noise.u;
-  noise.u = std::max(kLeastEstimate, std::sqrt(sum_of_squares(left) / noise.freedom));
-  noise.std = noise.u / std::sqrt(2 * noise.freedom);
+  take_residuals(left, noise);
   return std::abs(noise.u / before - 1);
 }
 
@@ -220,8 +225,7 @@ std::vector<FileNoise> file_noise_of_residual(model::Measurement& rows, const Ei
     const std::vector<double> left = residuals_of(rows, noise, residual);
     noise.source = FileNoise::Source::kGivenMachine;
     noise.freedom = static_cast<double>(left.size());
-    noise.u = std::max(kLeastEstimate, std::sqrt(sum_of_squares(left) / noise.freedom));
-    noise.std = noise.u / std::sqrt(2 * noise.freedom);
+    take_residuals(left, noise);
   }
   for (const FileNoise& noise : list) write_estimate(rows, noise);
   return list;
