@@ -25,16 +25,20 @@ constexpr std::array<std::pair<const char*, const char*>, 6> kInstrument = {{
 /// Makes the entries of effects.
 class Causes {
  public:
-  explicit Causes(const Findings& found)
-      : found_(found), pool_(found.finder.pool()), axes_(found.machine), first_(found.accepted.front()) {}
+  Causes(const Findings& found, std::size_t position)
+      : found_(found),
+        pool_(found.finder.pool()),
+        axes_(found.machine),
+        position_(position),
+        first_(found.accepted[position]) {}
 
   std::vector<Cause> all(const std::vector<double>& aliases) const {
     const double own = found_.finder.evidence_for(first_);
     std::vector<Cause> causes = {entry(first_, pool_[first_].scored.scanned, own)};
     for (const double alias : aliases)
       causes.push_back(entry(first_, {alias}, found_.finder.evidence_for(first_, {alias})));
-    const std::vector<std::size_t> close = found_.close();
-    for (const Alternative& other : found_.alternatives.other)
+    const std::vector<std::size_t> close = found_.close(position_);
+    for (const Alternative& other : found_.alternatives[position_].other)
       if (std::find(close.begin(), close.end(), other.item) != close.end())
         causes.push_back(entry(other.item, pool_[other.item].scored.scanned, own - other.distance / 2));
     return causes;
@@ -65,8 +69,13 @@ class Causes {
   const Findings& found_;
   const Pool& pool_;
   const effects::AxisPlaces axes_;
-  const std::size_t first_;
+  const std::size_t position_, first_;
 };
+
+void sort_by_evidence(std::vector<Cause>& causes) {
+  std::stable_sort(causes.begin(), causes.end(),
+                   [](const Cause& a, const Cause& b) { return a.evidence > b.evidence; });
+}
 
 /// Aliases of the first step's period.
 std::vector<double> aliases_of(const Diagnosis& answer) {
@@ -86,14 +95,19 @@ Cause instrument_cause(const std::string& kind, double evidence) {
   return cause;
 }
 
+std::vector<Cause> causes_of_step(const Findings& found, std::size_t position) {
+  std::vector<Cause> causes = Causes(found, position).all({});
+  sort_by_evidence(causes);
+  return causes;
+}
+
 std::vector<Cause> causes_not_rejected(const Findings& found, const Diagnosis& answer) {
   std::vector<Cause> causes;
   const bool named = answer.verdict == Verdict::kMissingEffect || answer.verdict == Verdict::kAmbiguous;
   // Confirmed steps above a residual that is not noise are causes too; `remaining` states the rest.
   const bool part = answer.verdict == Verdict::kUnexplained && !answer.remaining.is_noise;
-  if (!found.accepted.empty() && (named || part)) causes = Causes(found).all(aliases_of(answer));
-  std::stable_sort(causes.begin(), causes.end(),
-                   [](const Cause& a, const Cause& b) { return a.evidence > b.evidence; });
+  if (!found.accepted.empty() && (named || part)) causes = Causes(found, 0).all(aliases_of(answer));
+  sort_by_evidence(causes);
   if (answer.instrument.empty()) return causes;
   if (named && !causes.empty())
     causes.push_back(instrument_cause(answer.instrument, causes.front().evidence));

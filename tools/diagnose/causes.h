@@ -18,6 +18,10 @@ inline constexpr double kLevelOfCauses = 0.95;
 /// if no cause of the catalogue explains the residual. `answer`: a diagnosis whose verdict is set.
 std::vector<Cause> causes_not_rejected(const Findings& found, const Diagnosis& answer);
 
+/// Returns the possible causes of the accepted effect at one position of the stepwise model, most likely
+/// first.
+std::vector<Cause> causes_of_step(const Findings& found, std::size_t position);
+
 /// Returns the error of the instrument as a cause. `kind`: a value of Cause::kind.
 Cause instrument_cause(const std::string& kind, double evidence);
 

@@ -67,6 +67,7 @@ class Diagnoser {
     }
     take(std::move(steps));
     decide();
+    compare_later_steps();
     fit_candidates();
     const Findings found{options_,   measurement_,   machine_,      finder_, accepted_,
                          confirmed_, not_confirmed_, alternatives_, listed_};
@@ -331,10 +332,11 @@ class Diagnoser {
   /// check rows confirm it, the alternative is the cause.
   void decide() {
     if (accepted_.empty()) return;
-    alternatives_ = fitted_alternatives();
-    if (alternatives_.other.empty()) return;
-    const std::size_t cause = accepted_.front(), better = alternatives_.other.front().item;
-    if (alternatives_.other.front().distance >= -finder_.evidence_beyond_limit(cause, better)) return;
+    alternatives_ = {fitted_alternatives(0)};
+    if (alternatives_.front().other.empty()) return;
+    const Alternative& best = alternatives_.front().other.front();
+    const std::size_t cause = accepted_.front(), better = best.item;
+    if (best.distance >= -finder_.evidence_beyond_limit(cause, better)) return;
     if (!finder_.replace(cause, better)) return;
     Steps steps = fit_steps(finder_.chosen());
     if (steps.accepted.empty() || steps.accepted.front() != better) {
@@ -342,12 +344,17 @@ class Diagnoser {
       return;
     }
     take(std::move(steps));
-    alternatives_ = fitted_alternatives();
+    alternatives_ = {fitted_alternatives(0)};
   }
 
-  Alternatives fitted_alternatives() const {
+  /// Compares each later step with its alternatives as well.
+  void compare_later_steps() {
+    for (std::size_t i = 1; i < accepted_.size(); ++i) alternatives_.push_back(fitted_alternatives(i));
+  }
+
+  Alternatives fitted_alternatives(std::size_t position) const {
     return alternatives_by_fits(
-        finder_, accepted_, options_.shown,
+        finder_, accepted_, position, options_.shown,
         {base_, result_.end, [this](const std::vector<std::size_t>& items) { return fit_with(items).fit; }});
   }
 
@@ -368,8 +375,9 @@ class Diagnoser {
       if (seen.insert(pool_.candidate(item).label).second) items.push_back(item);
     };
     if (!accepted_.empty()) take(accepted_.front());
-    for (const std::size_t item : alternatives_.within(options_.thresholds.acceptance.distance))
-      if (items.size() < options_.shown) take(item);
+    for (const Alternatives& one : alternatives_)
+      for (const std::size_t item : one.within(options_.thresholds.acceptance.distance))
+        if (items.size() < options_.shown) take(item);
     for (const std::size_t item : accepted_) take(item);
     for (const auto& [score, item] : rest) {
       if (items.size() >= options_.shown) break;
@@ -431,7 +439,7 @@ class Diagnoser {
   std::vector<std::size_t> listed_;
   std::set<std::size_t> confirmed_;         // items that the check rows confirm
   std::vector<std::string> not_confirmed_;  // labels of steps that the check rows contradict
-  Alternatives alternatives_;
+  std::vector<Alternatives> alternatives_;  // to each accepted effect
   Diagnosis result_;
 };
 

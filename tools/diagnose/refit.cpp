@@ -37,20 +37,21 @@ bool fits_and_predicts_better(const model::Measurement& rows, const Eigen::Vecto
 }
 
 Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::size_t>& accepted,
-                                  std::size_t most, const DecisionFits& fits) {
-  Alternatives found = finder.alternatives_to(accepted.front());
+                                  std::size_t position, std::size_t most, const DecisionFits& fits) {
+  const std::size_t effect = accepted[position];
+  Alternatives found = finder.alternatives_to(effect);
   if (!(fits.accepted.chi_square > 0)) return found;
   const DiagnoseThresholds& limits = finder.evidence().thresholds();
   const double own = finder.criterion_of_fit(accepted, 1);
   std::vector<std::size_t> set = accepted;
   std::size_t fitted = 0;
   std::erase_if(found.other, [&](Alternative& one) {
-    const bool response = are_responses(finder, one.item, accepted.front());
+    const bool response = are_responses(finder, one.item, effect);
     if ((!response && one.distance >= limits.acceptance.distance_of_fits) || fitted++ >= most) return false;
-    set.front() = one.item;
+    set[position] = one.item;
     const fit::FitResult fit = fits.of(set);
     if (!fit.converged) return false;
-    if (!response && finder.pool().is_richer(one.item, accepted.front()) &&
+    if (!response && finder.pool().is_richer(one.item, effect) &&
         share_apart(finder.evidence().measurement(), fits, fit) < limits.pool.held_share)
       return true;
     one.distance = finder.criterion_of_fit(set, fit.chi_square / fits.accepted.chi_square) - own;

@@ -29,17 +29,17 @@ struct DecisionFits {
 bool fits_and_predicts_better(const model::Measurement& rows, const Eigen::VectorXd& accepted,
                               const Eigen::VectorXd& other, const fit::NoiseModel& noise);
 
-/// Returns the alternatives to the first accepted effect, with their distances in BIC from full fits. Each
-/// fit has the alternative in place of the first effect. The search estimates the distances linearly; the
+/// Returns the alternatives to one accepted effect, with their distances in BIC from full fits. Each fit has
+/// the alternative in place of this effect. The search estimates the distances linearly; the
 /// distances of the full fits replace these estimates. Three kinds of alternatives have the distance of the
 /// estimate: alternatives beyond `distance_of_fits`, alternatives after the first `most`, and alternatives
 /// whose fit does not converge. A form of an effect with more unknowns is not an alternative if its fit
 /// predicts the same readings as the accepted form. A thermal response of another structure
 /// (`thermal-response`) is fitted at any distance. If a thermal response fits and predicts better than the
 /// accepted response, its distance (difference in BIC) is at most 0. `accepted`: indices of the accepted
-/// effects, not empty. A negative distance means that the fit prefers the alternative. Computing time: one
-/// fit for each alternative.
+/// effects; `position`: position of the effect in this list. A negative distance means that the fit prefers
+/// the alternative. Computing time: one fit for each alternative.
 Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::size_t>& accepted,
-                                  std::size_t most, const DecisionFits& fits);
+                                  std::size_t position, std::size_t most, const DecisionFits& fits);
 
 }  // namespace vernier::diagnose

@@ -123,6 +123,19 @@ std::string unrecorded_heat_in_words(const std::vector<std::string>& names) {
       names.size(), fmt::join(names, "; "));
 }
 
+std::string open_steps_in_words(const std::vector<LadderStep>& steps) {
+  std::string text;
+  for (const LadderStep& step : steps) {
+    std::vector<std::string> names;
+    for (const Cause& cause : step.causes) names.push_back(cause.description);
+    if (!names.empty())
+      text += fmt::format(
+          " Another part of the error has {} possible causes that these data do not distinguish: {}.",
+          names.size(), fmt::join(names, "; "));
+  }
+  return text;
+}
+
 std::string not_confirmed_in_words(const std::vector<std::string>& names) {
   return names.empty() ? "" : fmt::format("The check rows do not confirm {}.", fmt::join(names, ", "));
 }

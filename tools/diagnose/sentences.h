@@ -49,6 +49,9 @@ std::string pieces_in_words(const std::vector<std::string>& names);
 /// thermometer records.
 std::string unrecorded_heat_in_words(const std::vector<std::string>& names);
 
+/// Returns the sentences about the later steps that have several possible causes; empty if there are none.
+std::string open_steps_in_words(const std::vector<LadderStep>& steps);
+
 /// Returns the sentence "The check rows do not confirm A, B." with the given names; empty if there are no
 /// names.
 std::string not_confirmed_in_words(const std::vector<std::string>& names);

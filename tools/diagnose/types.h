@@ -92,10 +92,13 @@ struct LadderStep {
   /// confirmation.
   std::optional<bool> confirmed;
   std::optional<double> evidence;
-  /// False if no cause is named. Also false if a named effect stands beside effects that cannot be what their
-  /// names state, and this step is one of them or may be a part of the same error. The command improve does
-  /// not add such a step.
+  /// False if no cause is named, or if a step after the first has several possible causes. Also false if a
+  /// named effect stands beside effects that cannot be what their names state, and this step is one of them
+  /// or may be a part of the same error. The command improve does not add such a step.
   bool certain = true;
+  /// Possible causes of this step, most likely first, if the data do not reject a second one. Empty for the
+  /// first effect: its causes are Diagnosis::causes.
+  std::vector<Cause> causes;
 };
 
 /// Result of a diagnosis of a machine. The locations of the candidates refer to base.machine, which may have

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "tools/diagnose/causes.h"
 #include "tools/diagnose/day.h"
 #include "tools/diagnose/doubts/course.h"
 #include "tools/diagnose/doubts/shape.h"
@@ -45,6 +46,7 @@ class Decision {
         rows_(model::rebind(found.measurement, answer.base.machine, answer.end.machine)) {}
 
   void decide() {
+    mark_open_steps();
     for (const Rule& rule : kRules) {
       std::string text = (this->*rule.explains)();
       if (text.empty()) continue;
@@ -162,8 +164,8 @@ class Decision {
 
   std::string not_down_to_noise() {
     name_confusions();
-    if (!found_.alternatives.other.empty())
-      answer_.runner_up_distance = found_.alternatives.other.front().distance;
+    if (const auto& other = found_.alternatives.front().other; !other.empty())
+      answer_.runner_up_distance = other.front().distance;
     if (is_noise_ || is_explained_on_check()) return {};
     return (is_of_the_size_of_noise()
                 ? "Effects of the catalogue reduce the residual to the size of the noise, but the residual "
@@ -295,11 +297,11 @@ class Decision {
         text = aliases_in_words(pool_.candidate(item), pool_[item].scored.scanned.front(), aliases,
                                 found_.machine.axes[*pool_.candidate(item).choice.axis]);
     }
-    return text.empty() ? text : text + rest_;
+    return text.empty() ? text : text + rest();
   }
 
   std::string several_causes() {
-    const std::size_t others = found_.close().size();
+    const std::size_t others = found_.close(0).size();
     const bool or_set_up = set_up_explains_it_too();
     const bool or_day = !or_set_up && daily_drift_explains(finder_.evidence(), pool_, accepted_.front(),
                                                            {accepted_.begin() + 1, accepted_.end()},
@@ -313,20 +315,33 @@ class Decision {
                or_set_up ? " An instrument that was set up anew between the runs is a further possible cause."
                          : "",
                or_day ? " An instrument that drifts with the time of day is a further possible cause." : "") +
-           rest_;
+           rest();
   }
 
   std::string one_cause() {
-    const std::vector<Alternative>& other = found_.alternatives.other;
+    const std::vector<Alternative>& other = found_.alternatives.front().other;
     std::string text =
         cause_in_words(answer_.candidates.front(),
                        other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
                        other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size());
     if (!is_noise_) text += " The remaining residual is not noise." + where_left(answer_.left);
-    return text + rest_;
+    return text + rest();
   }
 
+  /// Sentences about the parts of the error that have no certain cause beside the named one.
+  std::string rest() const { return open_steps_in_words(answer_.ladder) + rest_; }
+
   // What the rules need.
+
+  /// A later step with several causes is not certain: a cause that only fits as well need not fit at other
+  /// temperatures, speeds or times.
+  void mark_open_steps() {
+    for (std::size_t i = 1; i < accepted_.size(); ++i) {
+      if (found_.close(i).empty()) continue;
+      answer_.ladder[i + 1].certain = false;
+      answer_.ladder[i + 1].causes = causes_of_step(found_, i);
+    }
+  }
 
   /// A shift in one run may be a moved base. Shifts in several runs, or beside set-up noise, are those of an
   /// instrument that was set up anew as well, unless they occur within a set-up.
@@ -523,13 +538,13 @@ class Decision {
 
   /// Sets which listed candidates cannot be distinguished from the cause.
   void name_confusions() {
-    const Alternatives& alternatives = found_.alternatives;
+    const Alternatives& alternatives = found_.alternatives.front();
     const auto id = [&](std::size_t item) { return pool_.candidate(item).choice.effect->id; };
     const auto note = [&](CandidateFinding& finding, const std::string& name) {
       auto& list = finding.confounded_with;
       if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
     };
-    std::vector<std::size_t> alike = found_.close();
+    std::vector<std::size_t> alike = found_.close(0);
     alike.push_back(accepted_.front());
     const auto is_alike = [&](std::size_t item) {
       return std::find(alike.begin(), alike.end(), item) != alike.end();

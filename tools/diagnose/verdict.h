@@ -19,13 +19,13 @@ struct Findings {
                                                   // is first
   const std::set<std::size_t>& confirmed;         // indices of the effects that the check rows confirm
   const std::vector<std::string>& not_confirmed;  // names of the steps that the check rows contradict
-  const Alternatives& alternatives;               // alternatives to the cause
+  const std::vector<Alternatives>& alternatives;  // alternatives to each accepted effect
   const std::vector<std::size_t>& listed;         // indices of the effects in the order of
                                                   // Diagnosis::candidates
 
-  /// Returns the alternatives to the cause that the data do not reject.
-  std::vector<std::size_t> close() const {
-    return alternatives.within(options.thresholds.acceptance.distance);
+  /// Returns the alternatives to an accepted effect that the data do not reject.
+  std::vector<std::size_t> close(std::size_t position) const {
+    return alternatives[position].within(options.thresholds.acceptance.distance);
   }
 };
 

@@ -206,6 +206,11 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
   json["candidates"] = Json::array();
   for (const diagnose::CandidateFinding& finding : diagnosis.candidates)
     json["candidates"].push_back(candidate_json(finding, diagnosis.base.machine));
+  const auto causes_json = [&](const std::vector<diagnose::Cause>& causes) {
+    Json list = Json::array();
+    for (const diagnose::Cause& cause : causes) list.push_back(cause_json(cause, diagnosis.base.machine));
+    return list;
+  };
   json["ladder"] = Json::array();
   for (const diagnose::LadderStep& step : diagnosis.ladder) {
     const bool given = step.effect.empty();
@@ -221,11 +226,10 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
                               {"confirmed", step.confirmed ? Json(*step.confirmed) : Json(nullptr)},
                               {"evidence", text::or_null(step.evidence)},
                               {"certain", given ? Json(nullptr) : Json(step.certain)},
+                              {"causes", causes_json(step.causes)},
                               {"chi2_per_dof", step.chi_square_per_freedom}});
   }
-  json["causes"] = Json::array();
-  for (const diagnose::Cause& cause : diagnosis.causes)
-    json["causes"].push_back(cause_json(cause, diagnosis.base.machine));
+  json["causes"] = causes_json(diagnosis.causes);
   json["level"] = diagnose::kLevelOfCauses;
   const bool open = diagnosis.verdict == diagnose::Verdict::kAmbiguous;
   json["separate_by"] = open ? Json(diagnosis.next_measurement) : Json::array();

@@ -234,7 +234,7 @@ TEST_F(Decision, TakesTheDistancesOfTheFits) {
   accepted.converged = true;
   std::size_t fits = 0;
   const auto alternatives = [&](double chi_square, bool converged) {
-    return alternatives_by_fits(finder_, finder_.chosen(), 8,
+    return alternatives_by_fits(finder_, finder_.chosen(), 0, 8,
                                 {fitted_, accepted, [&](const std::vector<std::size_t>&) {
                                    ++fits;
                                    fit::FitResult other;
@@ -251,6 +251,29 @@ TEST_F(Decision, TakesTheDistancesOfTheFits) {
   EXPECT_EQ(fits, 2 * std::min<std::size_t>(8, near));
   ASSERT_GT(near, 0U);
   EXPECT_LT(better.other.front().distance, 0);
+}
+
+// The reversal is clear; what grows beside it follows one thermometer as well as the other.
+TEST(Causes, OfALaterStepMakeItUncertain) {
+  const Diagnosis answer = diagnosed(runs_of(
+      4,
+      [](double x, int sense, int run, int row) {
+        return 0.015 * sense + 11.5e-6 * x * (slide_degC(run, row) - 20);
+      },
+      ",T_slide[degC],T_cover[degC]",
+      [](int run, int row) {
+        return fmt::format(",{:.4f},{:.4f}", slide_degC(run, row), cover_degC(run, row));
+      }));
+  ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+  ASSERT_EQ(answer.ladder.size(), 3U);
+  EXPECT_EQ(answer.ladder[1].effect, "backlash");
+  EXPECT_TRUE(answer.ladder[1].certain);
+  EXPECT_TRUE(answer.ladder[1].causes.empty());
+  EXPECT_EQ(answer.ladder[2].effect, "thermal-scale");
+  EXPECT_FALSE(answer.ladder[2].certain);
+  ASSERT_GE(answer.ladder[2].causes.size(), 2U);
+  for (const Cause& cause : answer.ladder[2].causes)
+    EXPECT_NE(answer.explanation.find(cause.description), std::string::npos) << answer.explanation;
 }
 
 // A spike behind each reversal that decays over the whole travel is the backlash itself, in a form with one
