@@ -64,10 +64,11 @@ std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t 
   Sampler sampler(machine, axis, at);
   std::vector<LeftOut> result;
   const auto look = [&](const std::string& what, const std::function<void(model::States&)>& vary,
-                        bool other_axis = false) {
+                        bool other_axis = false, bool of_input = false) {
     const double um = sampler.change_um(vary);
     if (um > kNothing_um)
-      result.push_back({"the error of " + machine.axes[axis].name + " depends on " + what, um, other_axis});
+      result.push_back(
+          {"the error of " + machine.axes[axis].name + " depends on " + what, um, other_axis, of_input});
   };
   for (std::size_t other = 0; other < machine.axes.size(); ++other) {
     if (other == axis) continue;
@@ -80,10 +81,13 @@ std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t 
   }
   for (std::size_t k = 0; k < machine.inputs.size(); ++k) {
     const model::Input& input = machine.inputs[k];
-    look("input " + input.name, [&](model::States& s) {
-      sampler.fill(s.input[k], input.min.value_or(input.reference - kInput),
-                   input.max.value_or(input.reference + kInput));
-    });
+    look(
+        "input " + input.name,
+        [&](model::States& s) {
+          sampler.fill(s.input[k], input.min.value_or(input.reference - kInput),
+                       input.max.value_or(input.reference + kInput));
+        },
+        false, true);
   }
   look("speed, acceleration, feed or path curvature", [&](model::States& s) {
     for (model::Column& v : s.velocity) sampler.fill(v, -kSpeed, kSpeed);

@@ -12,6 +12,7 @@ struct LeftOut {
   std::string what;
   double um = 0;
   bool other_axis = false;  // true: the error depends on the position or direction of another axis
+  bool of_input = false;    // true: the error depends on an input (a temperature)
   bool measured = true;     // false: no reading determines the error, and `um` is only a plausible size
 };
 

@@ -174,7 +174,7 @@ TEST_F(Pages, TouchRunsAsPrinted) {
   const std::string script = script_of(text);
   ASSERT_EQ(run(script), 0) << said_;
   const auto printed = blocks(text, "text");
-  ASSERT_EQ(printed.size(), 4u);
+  ASSERT_EQ(printed.size(), 5u);
   for (const std::string& lines : printed)
     EXPECT_NE(said_.find(lines), std::string::npos) << lines << "is not in\n" << said_;
   // The truth (tests/data/touch/make.py), within the uncertainties that the fits state.
@@ -187,11 +187,14 @@ TEST_F(Pages, TouchRunsAsPrinted) {
               {"mill", "squareness", -0.0034, 0.0002},
               {"mill", "scaleX", 40, 11},
               {"mill", "scaleY", -25, 11},
-              {"square", "C0Y", 60e-6, 5.8e-7}};
+              {"square", "C0Y", 60e-6, 5.8e-7},
+              {"square_printer", "EC0Y", 0.0012062, 0.4e-6}};  // calc_skew of Klipper, to 1 urad
   for (const auto& row : rows) {
     const model::Machine machine = model::read_machine(folder_ + "/build/touch/" + row.machine + ".xml");
     EXPECT_NEAR(machine.statics[*machine.find_static(row.name)].value, row.truth, 2.5 * row.std) << row.name;
   }
+  EXPECT_NE(read_file(folder_ + "/build/touch/skew/vernier_skew.cfg").find("xy_skew = -0.001205614"),
+            std::string::npos);
 }
 
 TEST_F(Pages, CameraRunsAsPrinted) {

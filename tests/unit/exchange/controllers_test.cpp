@@ -456,8 +456,43 @@ TEST(ControllerFiles, TellHowToCheckTheSign) {
               std::string::npos);
   EXPECT_NE(export_of(Controller::kSiemens, kSmall, 100)
                 .files.at("NC_CEC.INI")
-                .find("measure Y: its error changes by 4.0 um"),
+                .find("measure X: its error changes by 2.0 um"),
             std::string::npos);
+}
+
+/// The numbers of the sentences that check straightness and squareness.
+std::vector<double> checked_um(const Case& one, const std::string& file) {
+  std::vector<double> numbers;
+  const std::string& text = one.files.at(file);
+  for (const std::string before : {"is then ", "measure X: its error changes by "})
+    for (std::size_t at = text.find(before); at != std::string::npos; at = text.find(before, at + 1))
+      numbers.push_back(std::stod(text.substr(at + before.size())));
+  return numbers;
+}
+
+/// The bow of X is 22 um from the line between the ends. A tracker that is rotated by 57.7 urad reads 34.6 um
+/// at X 600 mm; the rotation of the whole part is an error of no straightedge and of no square.
+TEST(ControllerFiles, CheckStraightnessAndSquarenessWithoutTheAlignmentOfTheInstrument) {
+  const auto machine = [](const std::string& rotation) {
+    return R"xml(<machine name="bow"><variables><static>
+    <EC0Y value="0.00005" nominal="0" unit="1"/><r value=")xml" +
+           rotation + R"xml(" nominal="0" unit="rad"/></static>
+  <machineaxes><X min="0" max="600"/><Y min="0" max="400"/><Z min="-300" max="0"/></machineaxes>
+  <comptables><table axis="X"><station loc="0" Y="0"/><station loc="300" Y="-0.022"/><station loc="600" Y="0"/>
+  </table></comptables></variables><transforms branch="tool"><sixdof n="1" X="-r*Y+EC0Y*Y" Y="r*X"/>
+  <sixdof n="2" X="X" Y="lXy"/><sixdof n="3" Y="Y"/><sixdof n="4" Z="Z"/></transforms></machine>)xml";
+  };
+  const auto numbers = [&](Controller controller, const std::string& rotation, const std::string& file) {
+    return checked_um(export_of(controller, machine(rotation).c_str()), file);
+  };
+  for (const std::string rotation : {"0", "-0.0000577"})
+    for (const auto& [controller, file] :
+         {std::pair(Controller::kSiemens, "NC_CEC.INI"), std::pair(Controller::kHeidenhain, "README.txt")}) {
+      const std::vector<double> um = numbers(controller, rotation, file);
+      ASSERT_EQ(um.size(), 2U) << rotation << " " << file;
+      EXPECT_NEAR(um[0], -22, 0.35) << rotation << " " << file;  // two ends and a point, 0.1 um in the file
+      EXPECT_NEAR(um[1], 20, 0.35) << rotation << " " << file;   // 50 urad over 400 mm
+    }
 }
 
 }  // namespace

@@ -173,6 +173,41 @@ TEST(PrinterErrors, ScaleStaysWithoutThePresentSteps) {
   EXPECT_NEAR(errors.after_um[0], 0.0008 * 100 * 1000, 3);  // half of the travel to each side of the middle
 }
 
+/// The bed bows by 2 um per K: the files of one temperature do not hold that of another one.
+TEST(PrinterErrors, OfATemperatureAreStatedAtTheEndsOfItsRange) {
+  const Machine machine = parse_machine(R"xml(<machine name="warm"><variables>
+  <static><k value="0.002" nominal="0"/><grow value="0.01" nominal="0"/></static>
+  <machineaxes><X min="0" max="200"/><Y min="0" max="200"/><Z min="0" max="150"/></machineaxes>
+  <inputs><T_bed unit="degC" reference="20" min="20" max="60"/></inputs></variables>
+  <transforms branch="tool"><sixdof n="1" X="X" Y="Y"/>
+  <sixdof n="2" Z="Z+(T_bed-20)*(grow+k*(X-100)*(X-100)/10000)"/></transforms></machine>)xml",
+                                        "warm.xml");
+  const ThreeAxes axes = three_axes(machine);
+  const PrinterCorrection correction =
+      printer_correction(machine, axes, features_of(Firmware::kKlipper, {}), at_rest(machine), 1);
+  const std::vector<LeftOut> left = errors_of_inputs(machine, axes, correction, at_rest(machine), {});
+  ASSERT_EQ(left.size(), 1U);  // at 20 degC nothing changes
+  EXPECT_NE(left[0].what.find("the files hold T_bed = 20 degC, and not T_bed = 60 degC"), std::string::npos)
+      << left[0].what;
+  // 80 um between the middle and the edge, whose mean is 26.7 um; homing removes the growth.
+  EXPECT_NEAR(left[0].um, 80 - 80.0 / 3, 2);
+}
+
+TEST(KlipperFiles, OfTwoProfilesHaveTwoNames) {
+  const Machine machine = printer();
+  for (const std::string name : {"vernier_20", "vernier_60"}) {
+    PresentSetting present;
+    present.profile = name;
+    PrinterCorrection correction = printer_correction(
+        machine, three_axes(machine), features_of(Firmware::kKlipper, present), at_rest(machine), 1);
+    const ConfigurationFile file = firmware_files(Firmware::kKlipper, present, "printer", correction).at(0);
+    EXPECT_EQ(file.name, name + ".cfg");
+    for (const std::string& words : {"[bed_mesh " + name + "]\n", "[skew_correction " + name + "]\n",
+                                     "[include " + name + ".cfg]", "BED_MESH_PROFILE LOAD=" + name + "."})
+      EXPECT_NE(file.text.find(words), std::string::npos) << words;
+  }
+}
+
 /// A printer without errors whose last fit touched a bed that falls 1 mm in 1000 along X and rises 2 along Y.
 /// `workpiece`: the bed moves along Z, so that the tool point rises over the bed as Z falls.
 Machine over_a_bed(const std::string& planes, bool workpiece = false) {

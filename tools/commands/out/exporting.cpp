@@ -124,7 +124,8 @@ void refuse_without_errors(const ExchangeArguments& arguments, double before_um)
 void print_rms(const ExchangeArguments& arguments, std::size_t positions, double before_um, double after_um) {
   fmt::print(human_stream(arguments.json),
              "the model predicts an error of the tool point of {:.4g} um rms in the working volume ({} "
-             "positions); with the files {:.4g} um rms of this prediction remain\n",
+             "positions). The files hold the model to {:.4g} um rms; that is not the accuracy of the "
+             "machine.\n",
              before_um, positions, after_um);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
@@ -23,15 +24,33 @@ using exchange::Firmware;
 
 struct PrinterArguments {
   ExchangeArguments common;
-  std::string steps, bed;
+  std::string steps, bed, profile;
   std::vector<std::string> touches;
 };
 
 /// Word of --bed: the heights do not follow a bed.
 constexpr const char* kNoBed = "none";
 
+/// The name of the profile: stated, or "vernier_" with the name of the output folder, so that two exports
+/// have two names.
+std::string profile_of(const PrinterArguments& arguments) {
+  const std::string allowed(exchange::kOfProfileName);
+  if (!arguments.profile.empty()) {
+    if (arguments.profile.find_first_not_of(allowed) != std::string::npos)
+      throw text::InputError(
+          fmt::format("--profile: '{}' must have only letters A to Z, digits, - and _", arguments.profile));
+    return arguments.profile;
+  }
+  const std::filesystem::path folder = std::filesystem::absolute(arguments.common.output).lexically_normal();
+  std::string name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+  std::replace_if(
+      name.begin(), name.end(), [&](char c) { return allowed.find(c) == std::string::npos; }, '_');
+  return name.empty() ? "vernier" : "vernier_" + name;
+}
+
 exchange::PresentSetting present_of(const PrinterArguments& arguments) {
   exchange::PresentSetting present;
+  present.profile = profile_of(arguments);
   if (arguments.steps.empty()) return present;
   const std::vector<double> numbers = kinematics::number_list(arguments.steps, {3}, "--steps");
   for (const double number : numbers)
@@ -140,6 +159,17 @@ model::Machine with_straight_axes(const model::Machine& fitted, const exchange::
   return model::nominal_machine(fitted);
 }
 
+/// Errors by inputs, speed, travel since reversal and time: the files are those of one state.
+void add_left_out_of_state(std::vector<exchange::LeftOut>& left, const model::Machine& machine,
+                           const exchange::ThreeAxes& axes, const exchange::PrinterCorrection& correction,
+                           const model::States& at, const std::optional<exchange::Bed>& bed) {
+  for (exchange::LeftOut& one : exchange::errors_of_inputs(machine, axes, correction, at, bed))
+    left.push_back(std::move(one));
+  for (const std::size_t axis : axes.axis)
+    for (exchange::LeftOut& one : exchange::beyond_own_axis(machine, axis, at))
+      if (!one.other_axis && !one.of_input) left.push_back(std::move(one));
+}
+
 void export_printer(const PrinterArguments& arguments, Firmware firmware, const char* name) {
   const ExchangeArguments& common = arguments.common;
   const model::Machine fitted = read_model(common.machine);
@@ -175,14 +205,15 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   if (follows_touches)
     fmt::print(
         human_stream(common.json),
-        "with straight axes the touches show an error of the height of {:.4g} um rms ({} positions); with "
-        "the files {:.4g} um rms of it remain\n",
+        "with straight axes the touches show an error of the height of {:.4g} um rms ({} positions). The "
+        "files hold these heights to {:.4g} um rms; that is not the accuracy of the machine.\n",
         errors.rms_before_um, errors.positions, errors.rms_after_um);
   else
     print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);
   Json extra = errors_json(errors);
   std::vector<exchange::LeftOut> left = remaining(errors.after_um);
   add_unmeasured(left, correction);
+  add_left_out_of_state(left, machine, axes, correction, at, bed);
   if (bed) {
     extra["bed"] = bed->name;
     if (bed->shape) extra["bed_shape"] = shape_json(*bed->shape);
@@ -213,6 +244,12 @@ void add_printer(CLI::App* parent, const char* name, const char* what, const cha
             "--bed", arguments->bed,
             "plane whose slope the heights follow: an <artefact> that the last fit touched, or none; "
             "default: the only touched plane")
+        ->type_name("NAME");
+  if (firmware == Firmware::kKlipper)
+    command
+        ->add_option("--profile", arguments->profile,
+                     "name of the file and of its sections [skew_correction NAME] and [bed_mesh NAME]; "
+                     "default: vernier_ and the name of the output folder")
         ->type_name("NAME");
   if (firmware != Firmware::kGrbl)
     command

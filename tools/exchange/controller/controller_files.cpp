@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "tools/exchange/controller/test_moves.h"
 #include "tools/text/error.h"
 
 namespace vernier::exchange {
@@ -13,25 +15,6 @@ namespace {
 
 /// No "-0.000000".
 double printed(double value) { return std::abs(value) < 5e-10 ? 0.0 : value; }
-
-/// A sentence with two positions at which the effect of a table is large, so that the user checks the sign.
-/// Without values above 0.1 um there is nothing to check.
-std::string test_move(const ControllerTable& table, const std::string& mark, const std::string& reversed) {
-  const auto [low, high] = std::minmax_element(table.forward.begin(), table.forward.end());
-  constexpr double kVisible_mm = 1e-4;
-  if (*high - *low < kVisible_mm) return "";
-  const auto a = static_cast<std::size_t>(low - table.forward.begin());
-  const auto b = static_cast<std::size_t>(high - table.forward.begin());
-  return fmt::format(
-      "{0}Test move: with the table off, move {1} from {2:.3f} to {3:.3f} mm in the positive direction and\n"
-      "{0}measure {4}: its error changes by {5:.1f} um. With the table on, this change must be near 0 um. "
-      "If\n"
-      "{0}the change is near {6:.1f} um, {7}.\n",
-      mark, kLetters[table.input], std::clamp(table.position(std::min(a, b)), table.low, table.high),
-      std::clamp(table.position(std::max(a, b)), table.low, table.high), kLetters[table.output],
-      -1000 * (table.forward[std::max(a, b)] - table.forward[std::min(a, b)]),
-      -2000 * (table.forward[std::max(a, b)] - table.forward[std::min(a, b)]), reversed);
-}
 
 const char* const kMeasured =
     "The machine file describes errors that were measured with these compensations off. If the tables were\n"
@@ -64,7 +47,7 @@ std::string enc_comp(const ControllerTables& tables, const ControllerTable& tabl
       "; axis must be referenced again.\n",
       axis, count);
   text += "; Sign: a positive value moves the axis in its negative direction.\n";
-  text += test_move(table, "; ", "change the sign of all values");
+  text += positioning_move(table, "; ", "change the sign of all values");
   text += "CHANDATA(1)\n";
   for (std::size_t k = 0; k < count; ++k)
     text += fmt::format("$AA_ENC_COMP[0,{},{}]={:.6f}\n", k, axis, printed(-table.forward[k]));
@@ -83,7 +66,7 @@ std::string cec_table(const ControllerTable& table, std::size_t t, const std::ar
   std::string text =
       fmt::format("; Table {}: {} by the position of {}. Needs MD18342 $MN_MM_CEC_MAX_POINTS[{}] >= {}\n", t,
                   kLetters[table.output], kLetters[table.input], t, count);
-  text += test_move(table, "; ", fmt::format("change the sign of all values of table {}", t));
+  text += straightness_move(table, "; ", fmt::format("change the sign of all values of table {}", t));
   for (std::size_t k = 0; k < count; ++k)
     text += fmt::format("$AN_CEC[{},{}]={:.6f}\n", t, k, printed(-table.forward[k]));
   text += fmt::format("$AN_CEC_INPUT_AXIS[{0}]=(AX{1})\n$AN_CEC_OUTPUT_AXIS[{0}]=(AX{2})\n", t,
@@ -98,13 +81,16 @@ std::vector<ConfigurationFile> siemens(const ControllerSetting& setting, const s
                                        const ControllerTables& tables) {
   std::vector<ConfigurationFile> files;
   std::string cec;
-  std::size_t count = 0;
+  std::map<const ControllerTable*, std::size_t> number_of;  // of the $AN_CEC tables
   for (const ControllerTable& table : tables.tables)
-    if (table.input == table.output)
+    if (table.input == table.output) {
       files.push_back({fmt::format("AX{}_EEC.INI", setting.number[table.input]),
                        enc_comp(tables, table, setting.number[table.input], name)});
-    else
-      cec += cec_table(table, count++, setting.number);
+    } else {
+      const std::size_t number = number_of.size();
+      number_of[&table] = number;
+      cec += cec_table(table, number, setting.number);
+    }
   if (cec.empty()) return files;
   std::string text = fmt::format("%_N_NC_CEC_INI\n; {}: straightness and squareness\n", name);
   text += marked(kMeasured, "; ");
@@ -113,8 +99,15 @@ std::vector<ConfigurationFile> siemens(const ControllerSetting& setting, const s
       "; $MA_CEC_ENABLE; both must be off while this file is loaded. A change of MD18342 clears memory: "
       "save\n"
       "; the data first. The sign is that of the other compensation tables; no sentence of the\n"
-      "; manual about the sign of these tables was found: do every test move.\n"
-      "CHANDATA(1)\n";
+      "; manual about the sign of these tables was found: do every test move.\n";
+  text += squareness_moves(tables, "; ", [&](const ControllerTable* one, const ControllerTable* other) {
+    if (one == nullptr || other == nullptr)
+      return fmt::format("change the sign of all values of table {}",
+                         number_of.at(one == nullptr ? other : one));
+    return fmt::format("change the sign of all values of the tables {} and {}", number_of.at(one),
+                       number_of.at(other));
+  });
+  text += "CHANDATA(1)\n";
   files.push_back({"NC_CEC.INI", text + cec + "M17\n"});
   return files;
 }
@@ -164,13 +157,20 @@ std::vector<ConfigurationFile> heidenhain(const std::string& name, const Control
       "The files were not tried on a control. If the control refuses the first or last line of a table, "
       "create\n"
       "the table in its editor and enter the values.\n\n";
+  const auto column = [](const ControllerTable& table) {
+    return fmt::format("the column {} of {}.COM", kLetters[table.output], kLetters[table.input]);
+  };
   for (const ControllerTable& table : tables.tables)
-    text += test_move(table, "",
-                      table.input == table.output
-                          ? fmt::format("change the sign of the columns {} and BACKLASH of {}.COM",
-                                        kLetters[table.output], kLetters[table.input])
-                          : fmt::format("change the sign of the column {} of {}.COM", kLetters[table.output],
-                                        kLetters[table.input]));
+    text += table.input == table.output
+                ? positioning_move(table, "",
+                                   fmt::format("change the sign of the columns {} and BACKLASH of {}.COM",
+                                               kLetters[table.output], kLetters[table.input]))
+                : straightness_move(table, "", "change the sign of " + column(table));
+  text += squareness_moves(tables, "", [&](const ControllerTable* one, const ControllerTable* other) {
+    if (one == nullptr || other == nullptr)
+      return "change the sign of " + column(one == nullptr ? *other : *one);
+    return fmt::format("change the sign of {} and of {}", column(*one), column(*other));
+  });
   files.push_back({"README.txt", text});
   return files;
 }
@@ -251,8 +251,8 @@ std::vector<ConfigurationFile> fanuc(const ControllerSetting& setting, const std
     parameter(3624, fmt::format("{:.3f}", table.step));
     for (int k = 0; k < count; ++k)
       data += fmt::format("N{}Q0P{}\n", 10000 + first + k, increments.value[static_cast<std::size_t>(k)]);
-    notes +=
-        test_move(table, "", fmt::format("change the sign of the data {} to {}", first, first + count - 1));
+    notes += positioning_move(table, "",
+                              fmt::format("change the sign of the data {} to {}", first, first + count - 1));
     first += count;
   }
   return {{"PITCH.TXT", text + data + "%\n"}, {"README.txt", notes}};

@@ -347,4 +347,42 @@ PrinterErrors printer_errors(const model::Machine& machine, const ThreeAxes& axe
   return errors;
 }
 
+namespace {
+
+/// The lowest and the highest value of an input for which errors are stated.
+std::array<double, 2> range_of(const model::Machine& machine, const model::Input& input) {
+  constexpr double kBeside = 10;  // K or units of the input, on both sides of the reference
+  std::array<double, 2> range = {input.reference - kBeside, input.reference + kBeside};
+  if (machine.fitted)
+    for (const model::FitRecord::Range& measured : machine.fitted->measured)
+      if (measured.name == input.name && measured.max > measured.min) range = {measured.min, measured.max};
+  return {input.min.value_or(range[0]), input.max.value_or(range[1])};
+}
+
+}  // namespace
+
+std::vector<LeftOut> errors_of_inputs(const model::Machine& machine, const ThreeAxes& axes,
+                                      const PrinterCorrection& correction, const model::States& at,
+                                      const std::optional<Bed>& bed) {
+  const Matrix3Xd points = positions_in(over_bed(axes, bed));
+  const Matrix3Xd held = errors_at(machine, axes, points, &correction, at, bed);
+  std::vector<LeftOut> left;
+  for (std::size_t k = 0; k < machine.inputs.size(); ++k) {
+    const model::Input& input = machine.inputs[k];
+    for (const double value : range_of(machine, input)) {
+      model::States changed = at;
+      changed.input[k].setConstant(value);
+      const Matrix3Xd change = errors_at(machine, axes, points, &correction, changed, bed) - held;
+      const double um = 1000 * change.colwise().norm().maxCoeff();
+      if (!(um > kNothing_um)) continue;
+      left.push_back(
+          {fmt::format("change of the error of the tool point: the files hold {0} = {1:g} {2}, and "
+                       "not {0} = {3:g} {2}",
+                       input.name, at.input[k][0], input.unit, value),
+           um});
+    }
+  }
+  return left;
+}
+
 }  // namespace vernier::exchange

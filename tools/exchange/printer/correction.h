@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/exchange/left_out.h"
 #include "tools/exchange/printer/bed_shape.h"
 #include "tools/exchange/three_axes.h"
 #include "tools/model/machine.h"
@@ -108,5 +109,14 @@ struct PrinterErrors {
 PrinterErrors printer_errors(const model::Machine& machine, const ThreeAxes& axes,
                              const PrinterCorrection& correction, const model::States& at,
                              const std::optional<Bed>& bed = {});
+
+/// Returns the errors that inputs add (temperatures): the files hold the state `at`, and no file of a printer
+/// depends on an input. One entry for each input and each end of its range with a change of 0.01 um or more:
+/// the largest change of the error of the tool point from the state `at`, without a constant offset and a
+/// rotation about Z. The range is that of the machine file, else that of the last fit, else 10 units on both
+/// sides of the reference.
+std::vector<LeftOut> errors_of_inputs(const model::Machine& machine, const ThreeAxes& axes,
+                                      const PrinterCorrection& correction, const model::States& at,
+                                      const std::optional<Bed>& bed);
 
 }  // namespace vernier::exchange

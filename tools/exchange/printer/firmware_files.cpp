@@ -57,27 +57,27 @@ std::vector<ConfigurationFile> klipper(const PresentSetting& present, const std:
   round_to(correction, 1e-9, 1e-6);
   const HeightMesh& mesh = correction.mesh;
   const Skew skew = skew_of(correction, 1e-9);
+  const std::string& profile = present.profile;
   std::string text =
       correction.no_skew
           ? fmt::format(
-                "# {}: bed heights. Write [include vernier.cfg] into printer.cfg, beside the section "
+                "# {0}: bed heights. Write [include {1}.cfg] into printer.cfg, beside the section "
                 "[bed_mesh],\n"
                 "# which must be present. Load the heights at the end of the start code:\n"
-                "# BED_MESH_PROFILE LOAD=vernier. The squareness was not measured: a skew profile of the "
-                "printer stays.\n",
-                name)
+                "# BED_MESH_PROFILE LOAD={1}. The squareness was not measured: a skew profile of the printer "
+                "stays.\n",
+                name, profile)
           : fmt::format(
-                "# {}: squareness and bed heights. Write [include vernier.cfg] into printer.cfg, beside the "
+                "# {0}: squareness and bed heights. Write [include {1}.cfg] into printer.cfg, beside the "
                 "sections\n"
                 "# [skew_correction] and [bed_mesh], which must be present. Load both at the end of the "
-                "start "
-                "code:\n"
-                "# SKEW_PROFILE LOAD=vernier and BED_MESH_PROFILE LOAD=vernier.\n",
-                name);
+                "start code:\n"
+                "# SKEW_PROFILE LOAD={1} and BED_MESH_PROFILE LOAD={1}.\n",
+                name, profile);
   if (!correction.no_skew)
-    text += fmt::format("[skew_correction vernier]\nxy_skew = {:.9f}\nxz_skew = {:.9f}\nyz_skew = {:.9f}\n",
-                        skew.xy, skew.xz, skew.yz);
-  text += "\n[bed_mesh vernier]\nversion = 1\npoints =\n";
+    text += fmt::format("[skew_correction {}]\nxy_skew = {:.9f}\nxz_skew = {:.9f}\nyz_skew = {:.9f}\n",
+                        profile, skew.xy, skew.xz, skew.yz);
+  text += fmt::format("\n[bed_mesh {}]\nversion = 1\npoints =\n", profile);
   for (Index row = 0; row < mesh.z.rows(); ++row) {
     text += "\t";
     for (Index column = 0; column < mesh.z.cols(); ++column)
@@ -95,8 +95,8 @@ std::vector<ConfigurationFile> klipper(const PresentSetting& present, const std:
                     return fmt::format("[stepper_{}]\nrotation_distance: {:.6f}\n",
                                        static_cast<char>('x' + static_cast<int>(i)), next);
                   });
-  std::vector<ConfigurationFile> files = {{"vernier.cfg", text}};
-  if (!steps.empty()) files.push_back({"vernier_steppers.cfg", steps});
+  std::vector<ConfigurationFile> files = {{profile + ".cfg", text}};
+  if (!steps.empty()) files.push_back({profile + "_steppers.cfg", steps});
   return files;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/exchange/configuration_file.h"
@@ -17,7 +18,14 @@ enum class Firmware : std::uint8_t { kKlipper, kRepRap, kMarlin, kGrbl };
 struct PresentSetting {
   /// For X, Y, Z: steps per mm (M92, $100), or for Klipper mm per turn (rotation_distance).
   std::optional<std::array<double, 3>> steps;
+  /// Klipper: name of the file and of the sections [skew_correction NAME] and [bed_mesh NAME]. Two exports
+  /// for one printer need two names: the later of two sections with one name replaces the other.
+  std::string profile = "vernier";
 };
+
+/// Characters of a name that Klipper accepts as that of a section and as the value of LOAD=.
+inline constexpr std::string_view kOfProfileName =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
 
 /// Returns the parts of a correction that a firmware supports.
 PrinterFeatures features_of(Firmware firmware, const PresentSetting& present);

@@ -53,7 +53,7 @@ constexpr Allowed kAllowed[] = {
     {"export heidenhain", false, true, "machine leave-out at accept step tolerance reference output"},
     {"export fanuc", false, true, "machine leave-out at accept step tolerance reference numbers unit output"},
     {"export linuxcnc", false, true, "machine leave-out at accept component tolerance type output"},
-    {"export klipper", false, true, "machine leave-out at accept steps tolerance bed touches output"},
+    {"export klipper", false, true, "machine leave-out at accept steps tolerance profile bed touches output"},
     {"export rrf", false, true, "machine leave-out at accept steps tolerance bed touches output"},
     {"export marlin", false, true, "machine leave-out at accept steps tolerance bed touches output"},
     {"export grbl", false, true, "machine leave-out at accept steps tolerance output"},
