@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/commands/certain_steps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <vector>
 
 #include "tools/effects/add_string.h"
 #include "tools/effects/fitted_effect.h"
+#include "tools/effects/types.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/rebind.h"
 
@@ -87,6 +90,36 @@ std::optional<diagnose::LadderStep> step_beside_open(const diagnose::Diagnosis& 
     return step;
   }
   return std::nullopt;
+}
+
+std::string choice_of_cause(const diagnose::Diagnosis& d, const std::string& file) {
+  const auto named =
+      std::find_if(d.causes.begin(), d.causes.end(), [](const auto& cause) { return !cause.add.empty(); });
+  if (named == d.causes.end()) return "";
+  std::string add = named->add, periods;
+  if (named->period && named->candidate) {
+    std::size_t count = 0;
+    for (const diagnose::Cause& cause : d.causes)
+      if (cause.period && cause.axis == named->axis) {
+        periods += fmt::format("{}{:.4g}", count == 0 ? "" : ", ", *cause.period);
+        ++count;
+      }
+    if (count < 2) periods.clear();
+    for (const effects::CandidateUnknown& unknown : effects::scanned_unknowns(*named->candidate)) {
+      const std::string key = "start." + unknown.rule + "=";
+      const std::size_t at = add.find(key);
+      if (unknown.kind != effects::UnknownKind::kPeriod || at == std::string::npos || count < 2) continue;
+      const std::size_t from = at + key.size();
+      add.replace(from, std::min(add.find(',', from), add.size()) - from, "PERIOD");
+      periods = fmt::format(
+          " PERIOD is the pitch of the screw, the period of the scale or a turn of a gear{}: the readings "
+          "do not distinguish the periods {}.",
+          unknown.unit.empty() ? "" : ", in " + unknown.unit, periods);
+    }
+  }
+  return fmt::format(
+      "To correct this error too, decide for one cause: vernier add '{}' {} -o NEW.xml, then vernier fit.{}",
+      add, file, periods);
 }
 
 }  // namespace vernier::commands

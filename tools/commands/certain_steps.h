@@ -25,4 +25,9 @@ std::optional<diagnose::LadderStep> step_beside_open(const diagnose::Diagnosis& 
                                                      const model::Measurement& rows,
                                                      const diagnose::DiagnoseOptions& options);
 
+/// Returns a sentence with the command that adds the most likely of the open causes to the machine file
+/// `file`; an empty text if no cause can be added. A period that the readings do not determine is the word
+/// PERIOD in the command, with the periods that explain the readings equally well.
+std::string choice_of_cause(const diagnose::Diagnosis& d, const std::string& file);
+
 }  // namespace vernier::commands

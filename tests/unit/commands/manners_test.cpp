@@ -322,6 +322,10 @@ TEST_F(Manners, ImproveAddsTheCertainEffectBeforeAnAmbiguousPeriod) {
       said("The file better/1_backlash.xml is the machine fitted without these causes, for vernier export."))
       << said_;
   EXPECT_TRUE(said("decide for one cause: vernier add 'cyclic-error:axis=X")) << said_;
+  // No reading determines the period: the command names none of those that fit.
+  EXPECT_TRUE(said("start.p=PERIOD' better/1_backlash.xml") &&
+              said("a turn of a gear, in mm: the readings do not distinguish the periods "))
+      << said_;
 }
 
 TEST_F(Manners, CorrectWritesNothingBeyondMaxcorrection) {

@@ -225,13 +225,9 @@ class Improver {
     std::string text =
         fmt::format("The file {} is the machine fitted without these causes, for vernier export.", file);
     if (left_um > 0) text += fmt::format(" An error of {:.2g} um rms remains uncorrected.", left_um);
-    const auto named =
-        std::find_if(d.causes.begin(), d.causes.end(), [](const auto& cause) { return !cause.add.empty(); });
-    if (named == d.causes.end()) return text;
-    text += fmt::format(
-        " To correct this error too, decide for one cause: vernier add '{}' {} -o NEW.xml, then "
-        "vernier fit.",
-        named->add, file);
+    const std::string choice = choice_of_cause(d, file);
+    if (choice.empty()) return text;
+    text += " " + choice;
     const bool by_rows = std::any_of(d.causes.begin(), d.causes.end(), [](const auto& cause) {
       return cause.add.find("form=count") != std::string::npos;
     });
