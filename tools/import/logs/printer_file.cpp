@@ -207,7 +207,7 @@ std::array<double, 2> offset_in(const std::map<std::string, Section>& sections, 
     if (!of.empty() && own != offset)
       throw text::InputError({file, line}, name,
                              fmt::format("the sections [{}] and [{}] give different offsets of a probe; give "
-                                         "the offset of the probe that measured the mesh with --offset X,Y",
+                                         "the offset of the probe that measured the mesh with --offset=X,Y",
                                          of, name));
     offset = own;
     of = name;
@@ -217,7 +217,7 @@ std::array<double, 2> offset_in(const std::map<std::string, Section>& sections, 
       if (name.starts_with("include "))
         throw text::InputError(
             {file, 0}, name,
-            "the offset of the probe may be in this other file: state it with --offset X,Y "
+            "the offset of the probe may be in this other file: state it with --offset=X,Y "
             "(0,0 if the nozzle itself touches)");
   return offset;
 }

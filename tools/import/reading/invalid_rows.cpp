@@ -23,10 +23,6 @@ const WordSet kInvalidWords = {"ungültig",    "ungueltig", "ungültige",   "ung
                                "invalid",     "verworfen", "discarded",   "void",       "rejected",
                                "fehlmessung", "discard",   "unbrauchbar", "unusable",   "reject"};
 
-std::vector<std::string> words_of(const std::string& text) {
-  return text::words_in(text::in_small_letters(text), " \t_-./:;,()[]!=");
-}
-
 /// True for a remark that says that its row is no valid reading. A negation ("nicht ungültig") and a question
 /// ("ungültig?") are no such remark.
 bool says_invalid(const std::string& cell) {
@@ -37,7 +33,7 @@ bool says_invalid(const std::string& cell) {
   if (cell.find('?') != std::string::npos) return false;
   if (kWhole.contains(text::in_small_letters(cell))) return true;
   bool invalid = false, valid = false, negated = false;
-  for (const std::string& word : words_of(cell)) {
+  for (const std::string& word : plain_words(cell)) {
     invalid |= kInvalidWords.contains(word);
     valid |= kValid.contains(word);
     negated |= kNot.contains(word);
@@ -55,7 +51,7 @@ bool is_about_another_reading(const std::string& cell) {
   static const WordSet kInstead = {"ersetzt", "replaces", "statt", "instead", "remplace"};
   static const WordSet kPassive = {"durch", "by", "wird", "wurde", "par"};
   bool again = false, other = false, instead = false, passive = false;
-  for (const std::string& word : words_of(cell)) {
+  for (const std::string& word : plain_words(cell)) {
     again |= kAgain.contains(word);
     other |= kOther.contains(word);
     instead |= kInstead.contains(word);
@@ -69,7 +65,7 @@ bool is_about_another_reading(const std::string& cell) {
 std::vector<std::size_t> columns_named(const sheet::SheetTable& table, const std::string& cell) {
   std::vector<std::string> names;
   bool run = false, number = false, sense = false;
-  for (const std::string& word : words_of(cell)) {
+  for (const std::string& word : plain_words(cell)) {
     if (kInvalidWords.contains(word)) continue;
     const bool digits = word.find_first_not_of("0123456789") == std::string::npos;
     run |= says_run(word);
@@ -82,7 +78,7 @@ std::vector<std::size_t> columns_named(const sheet::SheetTable& table, const std
   std::vector<std::size_t> columns;
   std::size_t others = 0;
   for (std::size_t k = 0; k < table.headings.size(); ++k) {
-    const std::vector<std::string> heading = words_of(table.headings[k].name);
+    const std::vector<std::string> heading = plain_words(table.headings[k].name);
     const auto has = [&](const auto& name) {
       return std::find(heading.begin(), heading.end(), name) != heading.end();
     };
@@ -125,7 +121,7 @@ bool flag_says_invalid(Flags flags, const std::string& cell) {
 
 /// The word for invalid in a remark.
 std::string invalid_word(const std::string& cell) {
-  for (const std::string& word : words_of(cell))
+  for (const std::string& word : plain_words(cell))
     if (kInvalidWords.contains(word)) return word;
   return "invalid";
 }

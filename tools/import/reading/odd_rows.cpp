@@ -20,15 +20,11 @@
 namespace vernier::importer {
 namespace {
 
-std::vector<std::string> words_of(const std::string& cell) {
-  return text::words_in(text::in_small_letters(cell), " \t_-./:;,()[]!?=");
-}
-
 bool names_state(const std::string& cell) {
   static constexpr std::array<std::string_view, 12> kStarts = {
       "temp", "luftdruck", "luftfeuchte", "lufttemp", "feuchte",   "humidity",
       "air",  "pressure",  "uhrzeit",     "pause",    "wartezeit", "werkstücktemp"};
-  const std::vector<std::string> words = words_of(cell);
+  const std::vector<std::string> words = plain_words(cell);
   return !words.empty() && std::any_of(kStarts.begin(), kStarts.end(), [&](std::string_view start) {
     return words.front().starts_with(start);
   });
@@ -38,7 +34,7 @@ bool names_repetition(const std::string& cell) {
   static const std::set<std::string> kWords = {
       "nachmessung", "nachgemessen", "wiederholung", "wiederholt", "wiederholmessung", "remeasured",
       "repeat",      "repeated",     "repetition",   "again",      "nochmal",          "nochmals"};
-  const std::vector<std::string> words = words_of(cell);
+  const std::vector<std::string> words = plain_words(cell);
   return std::any_of(words.begin(), words.end(), [](const auto& word) { return kWords.contains(word); });
 }
 

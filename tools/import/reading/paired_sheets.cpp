@@ -32,7 +32,7 @@ DirectedName directed(const std::string& name) {
   std::string small = text::in_small_letters(name);
   for (std::size_t k = 1; k + 1 < small.size(); ++k)
     if (small[k] == '-' && small[k + 1] != ' ') small[k] = ' ';  // "X-hin" has two words
-  for (const std::string& word : text::words_in(small, " \t_./:;,()[]")) {
+  for (const std::string& word : words_with_signs(small)) {
     const bool of_axis = is_axis_direction(word), sign = word == "+" || word == "-";
     const bool letters = word.find_first_of("0123456789") == std::string::npos;
     const int sense = letters && word.size() > 1 ? sense_said(word) : sign ? sense_said(word) : 0;
@@ -63,7 +63,7 @@ bool has_directions(const sheet::SheetTable& table) {
   const Guess guess(usual);
   for (const sheet::Heading& heading : table.headings) {
     if (is_sense(guess.column(heading).name)) return true;
-    for (const std::string& word : text::words_in(text::in_small_letters(heading.text), " \t_./:;,()[]"))
+    for (const std::string& word : words_with_signs(text::in_small_letters(heading.text)))
       if (word.find_first_of("0123456789") == std::string::npos && sense_said(word) != 0 && word != "pos")
         return true;
     if (heading.text.find("\u2191") != std::string::npos || heading.text.find('+') != std::string::npos)

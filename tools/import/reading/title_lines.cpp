@@ -41,7 +41,7 @@ std::vector<std::string> words_of_title(const std::string& cell) {
     const bool joins = letter(at - 1) && letter(at + 1), parts = cell[at - 1] == ' ' && cell[at + 1] == ' ';
     if (cell[at] == '-' && (joins || parts)) text[at] = ' ';
   }
-  return text::words_in(text, " \t_./:;,()[]#");
+  return words_with_signs(text);
 }
 
 /// Words that are a direction only beside another word of a title: "Pos" alone is a position.

@@ -17,9 +17,7 @@ namespace {
 using WordSet = std::set<std::string, std::less<>>;
 
 /// The words of a heading or a cell with one blank between them: "i.O.", "I. O." and "i O" are "i o".
-std::string plain_words_of(const std::string& text) {
-  return text::joined(text::words_in(text::in_small_letters(text), " \t_-./:;,()[]?!"), " ");
-}
+std::string plain_words_of(const std::string& text) { return text::joined(plain_words(text), " "); }
 
 enum class Verdict { kNoVerdict, kByItsCells, kVerdict };
 

@@ -56,7 +56,7 @@ Names computed_word(const std::string& cell) {
   Names found = Names::kNoRow;
   bool standard = false, deviation = false;
   if (says_standard_deviation(cell)) return Names::kRow;
-  for (const std::string& word : text::words_in(text::in_small_letters(cell), " \t_-./:;,()[]=")) {
+  for (const std::string& word : plain_words(cell)) {
     standard |= word == "standard" || word == "std";
     deviation |= word == "deviation" || word == "dev" || word == "abweichung";
     if (kAlways.contains(word))

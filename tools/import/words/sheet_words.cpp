@@ -103,6 +103,14 @@ std::vector<std::string> heading_words(const std::string& name) {
   return text::words_in(name, " \t_-./:;,()[]#+");
 }
 
+std::vector<std::string> plain_words(std::string_view text) {
+  return text::words_in(text::in_small_letters(text), " \t_-./:;,()[]!?=");
+}
+
+std::vector<std::string> words_with_signs(std::string_view text) {
+  return text::words_in(text, " \t_./:;,()[]#");
+}
+
 bool says_target(const std::string& word) { return kTargetWords.contains(word); }
 bool says_measured(const std::string& word) { return kMeasuredWords.contains(word); }
 bool says_display(const std::string& word) { return kDisplayWords.contains(word); }

@@ -12,6 +12,13 @@ namespace vernier::importer {
 /// Returns the words of a heading; "X_ist" and "X-ist" have two words.
 std::vector<std::string> heading_words(const std::string& name);
 
+/// Returns the words of a cell or a title in small letters, without any sign between or behind them:
+/// "Mittelwert (n=5)!" has the words "mittelwert", "n", "5".
+std::vector<std::string> plain_words(std::string_view text);
+
+/// Returns the words of a text with + and - as parts of a word: "Lauf 1 X+" has the words "Lauf", "1", "X+".
+std::vector<std::string> words_with_signs(std::string_view text);
+
 // Functions that return the meaning of a word in a heading. The word of a heading is in small
 // letters, in one of the languages that are usual in workshops.
 bool says_target(const std::string& word);
