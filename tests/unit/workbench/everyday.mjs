@@ -171,6 +171,24 @@ async function shop(page) {
   await accepted(page);
   await programAndMap(page);
   await positioning(page);
+  await sheetsOfAWorkbook(page);
+}
+
+/** A workbook with a sheet for each axis: every sheet is imported, as the command line can. */
+async function sheetsOfAWorkbook(page) {
+  await view(page, 'project');
+  await page.drop([{ name: 'three_axes.xlsx', bytes: readFileSync(join(source, 'tests/data/sheets/three_axes.xlsx')) }]);
+  await measured(page, 'three_axes_read.csv');
+  await picture(page, 'everyday_sheets', '#other-sheets');
+  await page.click('#other-sheets [data-sheet="Y"]');
+  await measured(page, 'three_axes_read.csv + three_axes_Y.csv');
+  await page.click('#other-sheets [data-sheet="Z"]');
+  await measured(page, 'three_axes_read.csv + three_axes_Y.csv + three_axes_Z.csv');
+  assert.equal(await page.evaluate("document.getElementById('other-sheets')"), null, 'no sheet is left');
+  assert.equal(
+    await page.evaluate("document.querySelector('#history li:last-child code').textContent"),
+    'vernier import table three_axes.xlsx --sheet Z -o three_axes_Z.csv',
+  );
 }
 
 /** The files of a printer, from its configuration to a configuration with the correction; the machine file is made on the page. */

@@ -74,6 +74,7 @@ Json sheet_preview(const std::string& bytes, const std::string& file, const impo
                {"workbook", sheet.workbook},
                {"sheet", sheet.sheet},
                {"sheets", sheet.sheets},
+               {"tables_beside", sheet.tables_beside},
                {"separator", sheet::separator_word(sheet.separator)},
                {"decimal", sheet.decimal_comma ? "comma" : "point"},
                {"heading_line",

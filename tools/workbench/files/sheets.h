@@ -11,7 +11,8 @@ namespace vernier::workbench {
 /// text with another first line may be a spreadsheet.
 bool begins_as_measurement(const std::string& text);
 
-/// Returns how a spreadsheet is read, as JSON: {how, separator, decimal, heading_line, columns
+/// Returns how a spreadsheet is read, as JSON: {how, sheet, sheets: names of all sheets of a workbook,
+/// tables_beside: names of the other visible sheets with tables, separator, decimal, heading_line, columns
 /// (columns_json), rows: the first as cells, csv: the first lines of the measurement file, n_rows, message:
 /// reason why it is not a measurement yet}. Throws InputError if the file does not contain a table.
 nlohmann::ordered_json sheet_preview(const std::string& bytes, const std::string& file,

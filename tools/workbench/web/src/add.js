@@ -3,7 +3,7 @@ import { choice, el, table, tiles } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, getJson, postBlob, postJson, refresh, run } from './api.js';
 import { fallingFigure } from './charts.js';
-import { button, gate, guarded, needsSubject, panel } from './parts.js';
+import { button, gate, guarded, needsSubject, panel, showError } from './parts.js';
 import { moreOptions } from './options.js';
 import { parameterPanel } from './parameters.js';
 import { redrawAll } from './plot.js';
@@ -125,6 +125,9 @@ function sliderPanel(error) {
       numbers.textContent = `rms ${number(answer.rms_um, 4)} µm on fit rows, ${number(answer.check_rms_um, 4)} µm on held-out rows`;
       Object.assign(numbers.dataset, { rms: answer.rms_um, ms: (performance.now() - start).toFixed(1) });
       redrawAll();
+      error.replaceChildren();
+    } catch (why) {
+      await showError(error, why); // the value is none that the model can have
     } finally {
       busy = false;
       if (waiting) {

@@ -151,7 +151,7 @@ function exclusion(error) {
     gate(exclude, selection.count ? null : kNoRows);
   });
   gate(exclude, kNoRows);
-  fill();
+  guarded(list, fill);
   return el(
     'div',
     {},

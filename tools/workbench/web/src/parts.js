@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
 import { chart } from '../../../report/web/src/chart.js';
-import { getJson, Refused } from './api.js';
+import { getJson, named, Refused } from './api.js';
 import { fieldName } from './options.js';
 import { store } from './store.js';
 
@@ -52,7 +52,14 @@ export function pageWords(message, typed) {
           .join(', ')} in the field "accept".`
       : whole,
   );
-  return accepted.replace(/--([a-z][\w-]*)/g, (whole, name) => (has(name) ? `the field "${fieldName(name)}"` : whole));
+  const field = (name) => `the field "${fieldName(name)}"`;
+  // The option is the word in doubt, or has a value: --offset=X,Y is a list, whose field has "; " between two values.
+  return accepted
+    .replace(/"--([a-z][\w-]*)": /g, (whole, name) => (has(name) ? `${field(name)}: ` : whole))
+    .replace(/--([a-z][\w-]*)=([^\s,;()]+(?:,[^\s,;()]+)*)/g, (whole, name, value) =>
+      has(name) ? `"${value.replaceAll(',', '; ')}" in ${field(name)}` : whole,
+    )
+    .replace(/--([a-z][\w-]*)/g, (whole, name) => (has(name) ? field(name) : whole));
 }
 
 /** What stands where there is nothing to show yet: what to choose, or why the chosen rows cannot be read. */
@@ -74,7 +81,8 @@ export const figure = (label, options, caption = null) =>
 /** An error in its box: the words, and where they name a line of a file, that line. */
 export async function showError(box, error) {
   if (!(error instanceof Refused)) throw error;
-  const where = error.message.match(/([^\s:"]+):(\d+): (?:"(.*?)": )?/);
+  // A place is a file of the project and a line; the address of a board (tcp://host:1502) only looks like one.
+  const where = [...error.message.matchAll(/([^\s:"]+):(\d+): /g)].find(([, name]) => named(name));
   box.replaceChildren(el('p', { class: 'error', role: 'alert' }, pageWords(error.message, error.job?.command)));
   if (!where) return;
   try {

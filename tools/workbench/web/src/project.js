@@ -37,7 +37,7 @@ async function importFile(name, kind, box, repair, beside = []) {
     await run({ command: `import ${importer}`, ...fields, output });
     return done(output);
   }
-  return importSheet(box, name, done);
+  return importSheet(box, name, (outputs) => choose(store.machine, [...beside, ...outputs]));
 }
 
 /** A machine file for the description of a robot. */
@@ -208,10 +208,12 @@ function fileRow(file, kind, act) {
 
 function history() {
   const box = el('div', { id: 'history' });
-  const act = (what) => async () => {
-    await postJson('/api/history', { do: what });
-    await refresh();
-  };
+  const error = el('div', {});
+  const act = (what) => () =>
+    guarded(error, async () => {
+      await postJson('/api/history', { do: what });
+      await refresh();
+    });
   const draw = () => {
     const items = store.history.map((entry) => el('li', { class: entry.undone ? 'undone' : null }, el('code', {}, entry.command)));
     box.replaceChildren(items.length ? el('ol', {}, items) : el('p', { class: 'note' }, 'Nothing was done yet.'));
@@ -220,6 +222,7 @@ function history() {
   draw();
   return panel(
     'History',
+    error,
     box,
     el(
       'div',

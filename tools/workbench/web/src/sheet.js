@@ -27,6 +27,9 @@ const withUnit = (one) => `${one.name}${one.unit ? `[${one.unit}]` : ''}`;
 const kInTable = ['file', 'output', 'column', 'deviation', 'leave', 'sheet'];
 const kOfPreview = [...kInTable, 'separator', 'decimal', 'skip', 'header', 'machine'];
 
+/** The name of a sheet as a part of the name of a file. */
+const inFileName = (sheet) => sheet.replace(/[\s/\\:]+/g, '_');
+
 /** What the program says of a spreadsheet, in the words of the table of columns. */
 function onPage(message) {
   if (/\bvernier [a-z]/.test(message)) return message;
@@ -89,10 +92,12 @@ function columnRow(column, k, preview, change) {
 
 /**
  * Takes a spreadsheet, a tracker's or a probe's table: what is understood without help is imported at once, what is not is
- * asked for here. `done(measurement)` is called with the name of the measurement file.
+ * asked for here. `done(measurements)` is called with the names of the measurement files: one for each sheet that was imported.
  */
 export async function importSheet(box, name, done) {
-  const said = new Map();
+  const said = new Map(),
+    read_into = new Map(), // the measurement file of each sheet that was imported
+    tables = new Set(); // the sheets to import; two sheets that are read as one table count as one
   let kind = null,
     sheet = '', // of a workbook; empty: the program's choice
     turn = 0;
@@ -117,7 +122,8 @@ export async function importSheet(box, name, done) {
     });
   const doImport = (preview) =>
     guarded(error, async () => {
-      const output = freeName(`${name.replace(/\.[^.]*$/, '')}_read`, '.csv');
+      const several = preview.sheets.length > 1;
+      const output = freeName(`${name.replace(/\.[^.]*$/, '')}_${several && sheet ? inFileName(sheet) : 'read'}`, '.csv');
       const options = kind === 'table' ? { ...ofSheet(), ...columns() } : ofPreview(preview);
       const values = forms[kind].values();
       // The list of nominal positions has the axes of the machine.
@@ -128,10 +134,34 @@ export async function importSheet(box, name, done) {
           null,
           el('p', { id: 'imported' }, `${name}: ${preview.how}. Read into `, el('strong', {}, output), '.'),
           button('Read it differently', () => draw(preview), { class: 'quiet', id: 'read-differently' }),
+          others(preview),
         ),
       );
-      await done(output);
+      read_into.set(preview.sheet, output);
+      await done([...read_into.values()]);
     });
+  /** A button for each sheet with a table that was not imported yet: the command line reads each by a call of its own. */
+  const others = (preview) => {
+    if (!tables.size) [preview.sheet, ...preview.tables_beside].forEach((one) => tables.add(one));
+    const left = [...tables].filter((one) => one !== preview.sheet && !read_into.has(one));
+    if (!left.length || kind !== 'table') return null;
+    return el(
+      'div',
+      { class: 'controls', id: 'other-sheets' },
+      el('span', {}, 'The workbook has more sheets with tables:'),
+      left.map((one) =>
+        button(
+          `Import sheet "${one}" too`,
+          () => {
+            sheet = one;
+            said.clear();
+            return begin();
+          },
+          { class: 'quiet', 'data-sheet': one },
+        ),
+      ),
+    );
+  };
   /** The answer to a doubt, as --column and --deviation on the command line: the column is what it seems to be. */
   const confirmations = (now) =>
     now.columns.map((column, k) =>
@@ -235,13 +265,14 @@ export async function importSheet(box, name, done) {
     );
     return null;
   }
-  box.replaceChildren(error);
-  const first = await guarded(error, ask);
-  if (!first) {
-    refused();
-    return;
+  /** Imports the table or sheet at once if nothing is missing, else asks. */
+  async function begin() {
+    error.replaceChildren();
+    box.replaceChildren(error);
+    const first = await guarded(error, ask);
+    if (!first) return refused();
+    kind = likely(first);
+    return first.message === null && kind === 'table' ? doImport(first) : draw(first);
   }
-  kind = likely(first);
-  if (first.message === null && kind === 'table') await doImport(first);
-  else await draw(first);
+  await begin();
 }
