@@ -4,6 +4,7 @@
 // comma; of another language the texts are there. Skipped without a browser.
 import { pathToFileURL } from 'node:url';
 import { Page, browserName } from '../workbench/browser.mjs';
+import { faultsOf, kTextsOfPage } from './english_words.mjs';
 
 if (browserName() === null) {
   console.log('language_test: Skipped, no headless browser');
@@ -33,6 +34,14 @@ try {
   for (const one of wanted) if (!texts.includes(one)) faults.push(`'${one}' is not on the page`);
   if (language === 'de') {
     for (const one of new Set(texts)) if (kEnglish.test(one)) faults.push(`English: ${one}`);
+    for (const [one, found] of faultsOf(await value(kTextsOfPage))) faults.push(`English (${found.join(', ')}): ${one}`);
+    // An entry of a legend that is no name of a series is not drawn.
+    const lost = await value(`[...document.querySelectorAll('.chart')].flatMap((chart) => {
+      const { option } = chart.options();
+      const names = new Set([option.series].flat().map((one) => one.name));
+      return (option.legend?.data ?? []).map((one) => one.name ?? one).filter((name) => !names.has(name));
+    })`);
+    for (const one of lost) faults.push(`no series of the legend's entry: ${one}`);
     if (path.endsWith('positioning.html') && !texts.some((one) => /^[−-]?\d+,\d+$/.test(one))) faults.push('no number has a comma');
     for (const one of new Set(texts)) if (/^[−-]?\d+\.\d+( [%°µ]m?)?$/.test(one)) faults.push(`point: ${one}`);
     // Of an axis in values: no separator of thousands, which is the decimal sign of the reader.

@@ -26,7 +26,7 @@ const german = {
   'tool: offset of the point. The BIC of the next best cause, joint J6: straightness in a, is higher by 640.':
     'Werkzeug: Versatz des Punkts. Das BIC der nächstbesten Ursache, Gelenk J6: Geradheit in a, ist um 640 höher.',
   'X error drifts with visit, on a curve (15.9 um in all over 0 to 25), in all runs; dirX moves along with it and would explain as much':
-    'Fehler in X driftet mit visit, nicht linear (zusammen 15,9 µm über 0 bis 25), in allen Läufen; dirX ändert sich mit und würde ebenso viel erklären',
+    'Fehler in X driftet mit Zeilennummer im Lauf (visit), nicht linear (zusammen 15,9 µm über 0 bis 25), in allen Läufen; dirX ändert sich mit und würde ebenso viel erklären',
   'X table: backlash and Z carriage: drift of the base or the instrument along X cannot be separated by 60 points of any admissible pose, approach direction, speed, time or input: these points reach a non-centrality of 2.98, but 21.1 is required.':
     'X-Tisch: Umkehrspiel und Z-Schlitten: Drift der Grundlage oder des Messgeräts entlang X lassen sich mit 60 Punkten in keiner zulässigen Stellung, Anfahrrichtung, Geschwindigkeit, Zeit oder Eingangsgröße unterscheiden: diese Punkte erreichen eine Nichtzentralität von 2,98; nötig ist 21,1.',
 };

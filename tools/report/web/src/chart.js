@@ -53,12 +53,22 @@ const axis = (one) => {
   return { ...of, axisLabel: { ...of.axisLabel, formatter: (...place) => t(String(written(...place))) } };
 };
 const each = (list, change) => (Array.isArray(list) ? list.map(change) : list && change(list));
+/** The entries of a legend are the names of series: an entry in another language belongs to no series, and is not drawn. */
+const legendOf = (one) =>
+  one.data ? { ...one, data: one.data.map((entry) => (typeof entry === 'string' ? t(entry) : named(entry))) } : one;
+const seriesOf = (one) => {
+  const of = named(one),
+    label = of.markLine?.label;
+  if (typeof label?.formatter !== 'string') return of;
+  return { ...of, markLine: { ...of.markLine, label: { ...label, formatter: t(label.formatter) } } };
+};
 
-/** The names of series, axes and categories in the language of the report. */
+/** The names of series, axes and categories, the legend and the labels of lines in the language of the report. */
 function localised({ height, option }) {
   const translated = { ...option };
   for (const [key, change] of [
-    ['series', named],
+    ['series', seriesOf],
+    ['legend', legendOf],
     ['xAxis', axis],
     ['yAxis', axis],
   ])

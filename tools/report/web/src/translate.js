@@ -20,6 +20,7 @@ function inPlace(words) {
   const whole = t(words);
   if (whole !== words) return whole;
   if (kNumberList.test(words)) return words.replace(kNumbers, local);
+  if (words.includes('; ')) return words.split('; ').map(inPlace).join('; ');
   return words.split(', ').map(t).join(', ');
 }
 const escaped = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, '\\$&');
