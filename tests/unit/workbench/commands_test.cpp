@@ -198,9 +198,11 @@ TEST(WorkbenchCommand, EveryAllowedOptionThatNamesAFileIsConfined) {
         continue;
       }
       // These only tell of a file: the place of a circle in the files' order, a line of a report's head and
-      // its language, free parameters beside those of the machine file, a tool of the machine file.
+      // its language, free parameters beside those of the machine file, a tool of the machine file, a name
+      // inside of the files of Klipper (letters, digits, - and _ only).
       if (option["name"] == "plane" || option["name"] == "header" || option["name"] == "language" ||
-          option["name"] == "free" || (command["name"] == "correct" && option["name"] == "tool"))
+          option["name"] == "free" || (command["name"] == "correct" && option["name"] == "tool") ||
+          (command["name"] == "export klipper" && option["name"] == "profile"))
         continue;
       for (const char* word :
            {"file", "folder", "directory", "(CSV", "(XML", "(HTML", ".csv", ".xml", "report"})

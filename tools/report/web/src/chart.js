@@ -58,7 +58,9 @@ const legendOf = (one) =>
   one.data ? { ...one, data: one.data.map((entry) => (typeof entry === 'string' ? t(entry) : named(entry))) } : one;
 const seriesOf = (one) => {
   const of = named(one),
-    label = of.markLine?.label;
+    label = of.markLine?.label,
+    value = of.label?.formatter;
+  if (typeof value === 'function') of.label = { ...of.label, formatter: (place) => t(value(place)) };
   if (typeof label?.formatter !== 'string') return of;
   return { ...of, markLine: { ...of.markLine, label: { ...label, formatter: t(label.formatter) } } };
 };
