@@ -193,7 +193,7 @@ TEST_F(Pages, TouchRunsAsPrinted) {
     const model::Machine machine = model::read_machine(folder_ + "/build/touch/" + row.machine + ".xml");
     EXPECT_NEAR(machine.statics[*machine.find_static(row.name)].value, row.truth, 2.5 * row.std) << row.name;
   }
-  EXPECT_NE(read_file(folder_ + "/build/touch/skew/vernier_skew.cfg").find("xy_skew = -0.001205614"),
+  EXPECT_NE(read_file(folder_ + "/build/touch/skew/vernier.cfg").find("xy_skew = -0.001205614"),
             std::string::npos);
 }
 

@@ -180,7 +180,7 @@ TEST_F(ProbedBed, ExportFollowsTheTouchesWhereNothingDistinguishesBedFromAxes) {
   EXPECT_GT(json["bed_shape"]["undetermined_um"], 50);
   EXPECT_EQ(json["bed_shape"]["touches_of_probe"], 192);
   // u is 3 um; the errors of the fitted axes would add 100 um and more.
-  EXPECT_LT(largest_of_mesh_um(text::read_file(folder + "/out/vernier_out.cfg")), 15);
+  EXPECT_LT(largest_of_mesh_um(text::read_file(folder + "/out/vernier.cfg")), 15);
 }
 
 /// The standard uncertainty of an angle that no reading determines is that of its scale: as a length over the

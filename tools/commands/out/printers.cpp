@@ -31,21 +31,13 @@ struct PrinterArguments {
 /// Word of --bed: the heights do not follow a bed.
 constexpr const char* kNoBed = "none";
 
-/// The name of the profile: stated, or "vernier_" with the name of the output folder, so that two exports
-/// have two names.
+/// The name of the profile. Two exports for one printer need two names: Klipper uses the later of two
+/// sections with one name.
 std::string profile_of(const PrinterArguments& arguments) {
-  const std::string allowed(exchange::kOfProfileName);
-  if (!arguments.profile.empty()) {
-    if (arguments.profile.find_first_not_of(allowed) != std::string::npos)
-      throw text::InputError(
-          fmt::format("--profile: '{}' must have only letters A to Z, digits, - and _", arguments.profile));
-    return arguments.profile;
-  }
-  const std::filesystem::path folder = std::filesystem::absolute(arguments.common.output).lexically_normal();
-  std::string name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
-  std::replace_if(
-      name.begin(), name.end(), [&](char c) { return allowed.find(c) == std::string::npos; }, '_');
-  return name.empty() ? "vernier" : "vernier_" + name;
+  if (arguments.profile.find_first_not_of(exchange::kOfProfileName) != std::string::npos)
+    throw text::InputError(
+        fmt::format("--profile: '{}' must have only letters A to Z, digits, - and _", arguments.profile));
+  return arguments.profile.empty() ? "vernier" : arguments.profile;
 }
 
 exchange::PresentSetting present_of(const PrinterArguments& arguments) {
@@ -248,8 +240,8 @@ void add_printer(CLI::App* parent, const char* name, const char* what, const cha
   if (firmware == Firmware::kKlipper)
     command
         ->add_option("--profile", arguments->profile,
-                     "name of the file and of its sections [skew_correction NAME] and [bed_mesh NAME]; "
-                     "default: vernier_ and the name of the output folder")
+                     "name of the file and of its sections [skew_correction NAME] and [bed_mesh NAME]; two "
+                     "exports for one printer need two names; default: vernier")
         ->type_name("NAME");
   if (firmware != Firmware::kGrbl)
     command
