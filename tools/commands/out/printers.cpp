@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
