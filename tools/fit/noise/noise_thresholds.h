@@ -55,10 +55,6 @@ struct NoiseThresholds {
   /// Limit for a reading, in robust standard deviations. Larger readings are reduced to the limit before the
   /// noise is estimated. The limit exists because a single outlier is not a property of the noise.
   double held = levels.sigmas;
-  /// Limit for the scatter of the readings as a share of u. Readings with less scatter are much better than
-  /// the stated u. If the scatter of the readings is much smaller than u, u is used as the standard deviation
-  /// of the independent noise.
-  double near_u = 1 / levels.doubtful_u;
   /// Limit for the scatter of the readings as a share of u. Readings with less scatter have negligible noise,
   /// because they come from a simulation.
   double far_below_u = levels.negligible;
