@@ -143,13 +143,18 @@ std::string spoken_with_size(const Candidate& candidate, const std::vector<Spoke
   const bool one = size->unknowns.size() == 1;
   const double amount = one ? plain : std::sqrt(squares);
   const double std = amount == 0 ? 0 : std::sqrt(variance) / std::abs(amount);
+  const bool of_workpiece = std::ranges::all_of(candidate.terms, [](const CandidateTerm& term) {
+    constexpr std::size_t kLengths = 3;  // X, Y, Z come before the rotations
+    return term.place.workpiece && term.place.dof < kLengths;
+  });
+  const double factor = one && of_workpiece ? -size->factor : size->factor;
   if (!size->name.empty()) text += ", " + size->name;
-  text += " " + sized(size->factor * amount, std::abs(size->factor) * std, unit);
+  text += " " + sized(factor * amount, std::abs(factor) * std, unit);
   // A second coefficient `s` is the change of the effect along its axis.
   const CandidateUnknown* const slope = by_rule(candidate, "s");
   if (const SpokenValue* const value = slope == nullptr ? nullptr : find_value(values, slope->name))
     text += fmt::format(" at position 0, and {} along the axis",
-                        sized(size->factor * value->value, std::abs(size->factor) * value->std, slope->unit));
+                        sized(factor * value->value, std::abs(factor) * value->std, slope->unit));
   for (const CandidateUnknown& unknown : candidate.unknowns)
     if (unknown.kind == UnknownKind::kPeriod)
       if (const SpokenValue* const value = find_value(values, unknown.name))

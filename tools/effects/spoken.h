@@ -24,8 +24,10 @@ struct SpokenValue {
 /// Returns the workshop name of an effect with the number that states its size, in a unit of the workshop
 /// (um, arcsec, ms, um/m). If the effect has a period, the text contains it. Examples: "Z carriage: lag 0.137
 /// +- 0.007 ms", "X carriage: cyclic error 4.2 +- 0.2 um, period 10.0 +- 0.2 mm", "X carriage:
-/// backlash, reversal value B 3.2 +- 0.2 um at position 0, and 40.9 +- 0.7 um/m along the axis". If no single
-/// number states the size of the effect (a table, a curve), spoken_with_size returns only the name.
+/// backlash, reversal value B 3.2 +- 0.2 um at position 0, and 40.9 +- 0.7 um/m along the axis". The size of
+/// a length is that of the tool point relative to the workpiece, as in ISO 230: a term that moves the
+/// workpiece has the opposite sign. If no single number states the size of the effect (a table, a curve),
+/// spoken_with_size returns only the name.
 std::string spoken_with_size(const Candidate& candidate, const std::vector<SpokenValue>& values);
 
 }  // namespace vernier::effects

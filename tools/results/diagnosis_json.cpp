@@ -182,9 +182,9 @@ text::Assurance assurance_of(const diagnose::Diagnosis& diagnosis, const model::
 }  // namespace
 
 std::string reversal_note(const effects::Candidate& candidate, const fit::ParameterEstimate& parameter) {
-  std::vector<model::ExprPtr> terms;
+  std::vector<ChainTerm> terms;
   for (const effects::CandidateTerm& term : candidate.terms)
-    terms.push_back(model::parse_expression(term.text));
+    terms.push_back({model::parse_expression(term.text), term.place.workpiece});
   return reversal_note(terms, parameter.name, parameter.value, parameter.unit);
 }
 

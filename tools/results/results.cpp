@@ -116,7 +116,7 @@ ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m)
       shared(result.machine, m, result.before, result.after, result.check, result.parameters.size());
   if (result.only_set_up) json["rms_only_set_up_um"] = text::or_null(result.only_set_up->rms_um);
   json["parameters"] = ordered_json::array();
-  const std::vector<model::ExprPtr> chain = chain_expressions(result.machine);
+  const std::vector<ChainTerm> chain = chain_expressions(result.machine);
   for (const fit::ParameterEstimate& item : result.estimates) {
     json["parameters"].push_back({{"name", item.name},
                                   {"value", item.value},
@@ -185,22 +185,24 @@ ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m)
   return json;
 }
 
-std::vector<model::ExprPtr> chain_expressions(const model::Machine& machine) {
-  std::vector<model::ExprPtr> list;
+std::vector<ChainTerm> chain_expressions(const model::Machine& machine) {
+  std::vector<ChainTerm> list;
   for (const auto* branch : {&machine.workpiece, &machine.tool})
     for (const model::Transform& transform : *branch)
-      for (std::size_t i = 0; i < transform.dof_count(); ++i) list.push_back(transform.dof[i]);
+      for (std::size_t i = 0; i < transform.dof_count(); ++i)
+        list.push_back({transform.dof[i], branch == &machine.workpiece});
   return list;
 }
 
-std::string reversal_note(const std::vector<model::ExprPtr>& terms, const std::string& name, double value,
+std::string reversal_note(const std::vector<ChainTerm>& terms, const std::string& name, double value,
                           const std::string& unit) {
   const bool length = unit == "mm";
   if (!length && unit != "deg") return {};
-  for (const model::ExprPtr& term : terms)
-    if (const auto found = effects::direction_coefficient(*term, name))
+  for (const ChainTerm& term : terms)
+    if (const auto found = effects::direction_coefficient(*term.expression, name))
       return fmt::format("coefficient of {}; reversal value B = {:.4g} {}", found->direction,
-                         2 * found->factor * value * (length ? maths::kUmPerMm : maths::kArcsecPerDeg),
+                         (term.workpiece && length ? -2 : 2) * found->factor * value *
+                             (length ? maths::kUmPerMm : maths::kArcsecPerDeg),
                          length ? "um" : "arcsec");
   return {};
 }

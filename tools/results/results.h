@@ -31,14 +31,21 @@ void print_domains(std::FILE* out, const nlohmann::ordered_json& domains);
 /// sentence}. The noise components are in um, or in arcsec if no length was read.
 nlohmann::ordered_json noise_json(const fit::NoiseModel& noise, const fit::NoiseUnit& unit);
 
+/// An expression of a chain, and whether it moves the workpiece.
+struct ChainTerm {
+  model::ExprPtr expression;
+  bool workpiece = false;
+};
+
 /// Returns what a coefficient of an approach direction means, for a parameter of a term such as
 /// "backlash_X*dirX": "coefficient of dirX; reversal value B = -12.15 um". The reversal value of ISO 230-2 is
-/// the difference of both approach directions, twice the coefficient. `terms`: the term, or the expressions
-/// of the chain. `value`: in `unit` (mm or deg). Empty for every other parameter.
-std::string reversal_note(const std::vector<model::ExprPtr>& terms, const std::string& name, double value,
+/// the difference of both approach directions of the tool point relative to the workpiece: twice the
+/// coefficient, with the opposite sign for a length that moves the workpiece. `terms`: the term, or the
+/// expressions of the chain. `value`: in `unit` (mm or deg). Empty for every other parameter.
+std::string reversal_note(const std::vector<ChainTerm>& terms, const std::string& name, double value,
                           const std::string& unit);
 /// Returns all expressions of the chain of a machine, for reversal_note().
-std::vector<model::ExprPtr> chain_expressions(const model::Machine& machine);
+std::vector<ChainTerm> chain_expressions(const model::Machine& machine);
 
 /// Returns a number as text for users: four significant digits, "-" if there is no value.
 std::string number_or_dash(const std::optional<double>& value, const char* unit);

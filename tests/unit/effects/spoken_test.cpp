@@ -54,6 +54,9 @@ TEST(Spoken, SaysHowMuchInUnitsOfTheShop) {
   EXPECT_EQ(five.sized("backlash:axis=C", {{0.001, 1.2e-4}}),
             "C table: backlash, reversal value B 7.2 +- 0.9 arcsec");
   EXPECT_EQ(five.sized("scale-error:axis=X", {{5.5e-5, 1.4e-6}}), "X carriage: scale error 55.0 +- 1.4 um/m");
+  // A table that lags behind leaves the tool ahead: ISO 230-2 states the tool relative to the workpiece.
+  EXPECT_EQ(five.sized("backlash:axis=Y", {{0.007, 1e-4}}),
+            "Y table: backlash, reversal value B -14.0 +- 0.2 um");
   // An uncertainty that is not known is not invented.
   EXPECT_EQ(five.sized("backlash:axis=X", {{-0.0118, 0}}), "X carriage: backlash, reversal value B -23.6 um");
 }

@@ -103,6 +103,28 @@ TEST(FileNoise, RepeatsInTheFileCountBeforeTheResidual) {
   EXPECT_NEAR(noise[0].u, kTracker_mm, 3 * noise[0].std);
 }
 
+// Five runs of a linear test: each run is a set-up of its own, with an offset of up to 20 um.
+TEST(FileNoise, RepeatsInOtherRunsCountBesideAnOffsetOfEachRun) {
+  std::mt19937_64 random(20261134);
+  std::normal_distribution<double> noise(0, 0.5e-3), offset(0, 10e-3);
+  std::string csv = "X[mm],dirX,run,Y[mm],Z[mm],x[mm]\n";
+  constexpr int kRuns = 5, kTargets = 11;
+  for (int run = 0; run < kRuns; ++run) {
+    const double shift = offset(random);
+    for (const int sense : {1, -1})
+      for (int i = 0; i < kTargets; ++i)
+        csv += fmt::format("{},{},{},250,-200,{:.6f}\n", 80 * i, sense, run,
+                           80 * i + 7e-3 * sense + shift + noise(random));
+  }
+  Measurement rows = parse_measurement(tracker(random, 20, 1, ",u[um]", ",6"), "tracker.csv", machine());
+  append_measurement(rows, parse_measurement(csv, "runs.csv", machine()));
+  const std::vector<FileNoise> estimate = estimate_file_noise(machine(), rows);
+  ASSERT_EQ(estimate.size(), 1u);
+  EXPECT_EQ(estimate[0].source, FileNoise::Source::kRepeatsInRuns) << estimate[0].sentence();
+  EXPECT_EQ(estimate[0].freedom, 2 * kTargets * (kRuns - 1) - (kRuns - 1));
+  EXPECT_NEAR(estimate[0].u, 0.5e-3, 3 * estimate[0].std);
+}
+
 TEST(FileNoise, TooFewReadingsAreRefusedWithTheRemedy) {
   std::mt19937_64 random(20261132);
   Measurement rows = both(laser(random), tracker(random, 3));

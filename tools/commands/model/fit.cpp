@@ -114,7 +114,7 @@ void print_odd_inputs(std::FILE* out, const model::Machine& machine) {
 void print_result(std::FILE* out, const fit::FitResult& result, const model::Measurement& m) {
   print_stages(out, result);
   fmt::print(out, "{:<24} {:>15} {:>12}  {:<6} {}\n", "parameter", "value", "std", "unit", "from");
-  const std::vector<model::ExprPtr> chain = results::chain_expressions(result.machine);
+  const std::vector<results::ChainTerm> chain = results::chain_expressions(result.machine);
   for (const fit::ParameterEstimate& item : result.estimates) {
     const std::string note = results::reversal_note(chain, item.name, item.value, item.unit);
     fmt::print(out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}{}\n", item.name, item.value, item.std, item.unit,

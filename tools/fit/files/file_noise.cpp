@@ -119,9 +119,17 @@ double estimated_values_per_touch(const model::Measurement& rows) {
 
 /// Takes the repeats of the file. Returns false if there are too few.
 bool take_repeats(const model::Measurement& rows, FileNoise& noise) {
-  const std::optional<RepeatNoise> repeats = noise_of_repeats(fit_rows_of(rows, noise), noise.rotations);
-  if (!repeats || repeats->value <= 0) return false;
+  const model::Measurement own = fit_rows_of(rows, noise);
+  std::optional<RepeatNoise> repeats = noise_of_repeats(own, noise.rotations);
   noise.source = FileNoise::Source::kRepeats;
+  if (!repeats) {
+    repeats = noise_of_repeats_in_set_ups(own, noise.rotations);
+    noise.source = FileNoise::Source::kRepeatsInRuns;
+  }
+  if (!repeats || repeats->value <= 0) {
+    noise.source = FileNoise::Source::kFit;
+    return false;
+  }
   noise.u = repeats->value / (noise.rotations ? maths::kUradPerDeg : maths::kUmPerMm);
   noise.freedom = static_cast<double>(repeats->freedom);
   noise.std = noise.u / std::sqrt(2 * noise.freedom);
@@ -176,17 +184,14 @@ void iterate_estimates(const model::Machine& machine, model::Measurement& rows,
     const FitResult result = fit(machine, rows, independent);
     change = 0;
     for (FileNoise& noise : list)
-      if (noise.source != FileNoise::Source::kRepeats)
-        change = std::max(change, estimate_file(rows, result, noise));
+      if (!noise.from_repeats()) change = std::max(change, estimate_file(rows, result, noise));
     for (const FileNoise& noise : list) write_estimate(rows, noise);
   }
-  for (FileNoise& noise : list)
-    noise.open = noise.source != FileNoise::Source::kRepeats && change > kSettledEstimate;
+  for (FileNoise& noise : list) noise.open = !noise.from_repeats() && change > kSettledEstimate;
 }
 
 bool all_from_repeats(const std::vector<FileNoise>& list) {
-  return std::all_of(list.begin(), list.end(),
-                     [](const FileNoise& noise) { return noise.source == FileNoise::Source::kRepeats; });
+  return std::all_of(list.begin(), list.end(), [](const FileNoise& noise) { return noise.from_repeats(); });
 }
 
 }  // namespace
@@ -194,6 +199,7 @@ bool all_from_repeats(const std::vector<FileNoise>& list) {
 std::string FileNoise::sentence() const {
   constexpr const char* kSources[] = {
       "the repeated readings of the file",
+      "the repeated readings in the runs of the file, beside an offset of each run",
       "the residual of the file beside the fitted model, which can contain errors of the model",
       "the residual of the file with the given machine, which contains the errors of the machine"};
   const double factor = rotations ? maths::kArcsecPerDeg : maths::kUmPerMm;

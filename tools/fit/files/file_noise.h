@@ -20,10 +20,11 @@ struct FileNoise {
   double u = 0;        // mm; deg if `rotations`
   double std = 0;      // standard uncertainty of `u`, same unit
   double freedom = 0;  // degrees of freedom of the estimate
-  enum class Source : std::uint8_t { kRepeats, kFit, kGivenMachine };
+  enum class Source : std::uint8_t { kRepeats, kRepeatsInRuns, kFit, kGivenMachine };
   Source source = Source::kFit;
   /// True if the fit of the whole survey does not repeat this value: the estimate did not converge.
   bool open = false;
+  bool from_repeats() const { return source == Source::kRepeats || source == Source::kRepeatsInRuns; }
   /// Returns a sentence with the value, its uncertainty, its source and what to do.
   std::string sentence() const;
 };
@@ -32,6 +33,7 @@ struct FileNoise {
 /// reading without u has the weight of u = 1 mm beside the others. The unit of the estimate is the lengths or
 /// the rotations of one file. The estimate is
 /// - the standard deviation of repeats in the file, if the repeats have at least 5 degrees of freedom;
+/// - otherwise that of repeats in other runs (set-ups) of the file, beside an offset of each run;
 /// - otherwise the residual of the file beside a fit of all files, over its degrees of freedom (readings
 /// minus
 ///   the trace of their part of the hat matrix). The fit is repeated with the estimate until the estimate

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <set>
 #include <string_view>
 
 #include "tools/format/columns.h"
@@ -77,37 +79,96 @@ struct RepeatPool {
 /// Factor from mm or deg to um or urad.
 double report_factor(bool rotations) { return rotations ? maths::kUradPerDeg : maths::kUmPerMm; }
 
-}  // namespace
-
-std::optional<RepeatNoise> noise_of_repeats(const model::Measurement& m, bool rotations) {
-  struct PoseReadings {
-    double sum = 0, squares = 0;
-    std::size_t count = 0;
-  };
-  std::map<std::pair<std::vector<double>, int>, PoseReadings> groups;
-  for (const model::Observation& o : m.observations) {
+/// Fit readings of lengths or rotations, grouped by what the operator repeats.
+std::map<std::pair<std::vector<double>, int>, std::vector<std::size_t>> repeated_readings(
+    const model::Measurement& m, bool rotations) {
+  std::map<std::pair<std::vector<double>, int>, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < m.observations.size(); ++i) {
+    const model::Observation& o = m.observations[i];
     // The reading of a thing is 0 in every repeat.
     if (m.check[o.row] != 0 || model::is_rotation(o.kind) != rotations || model::is_of_thing(o.kind))
       continue;
     std::vector<double> key = row_conditions(m, o.row);
     for (const model::Column& correction : m.correction)
       key.push_back(std::round(correction[static_cast<Eigen::Index>(o.row)] / kCorrectionStep));
-    PoseReadings& group = groups[{std::move(key), static_cast<int>(o.kind)}];
-    const double value = o.value * report_factor(rotations);
-    // A running mean loses fewer digits than sums of squares about the group's first value.
-    ++group.count;
-    const double step = value - group.sum;
-    group.sum += step / static_cast<double>(group.count);
-    group.squares += step * (value - group.sum);
+    groups[{std::move(key), static_cast<int>(o.kind)}].push_back(i);
   }
-  double squares = 0;
-  std::size_t freedom = 0;
-  for (const auto& [key, group] : groups) {
-    squares += group.squares;
-    freedom += group.count - 1;
-  }
+  return groups;
+}
+
+std::optional<RepeatNoise> pooled(double squares, std::size_t freedom) {
   if (freedom < kLeastRepeatFreedom) return std::nullopt;
   return RepeatNoise{std::sqrt(squares / static_cast<double>(freedom)), freedom};
+}
+
+}  // namespace
+
+std::optional<RepeatNoise> noise_of_repeats(const model::Measurement& m, bool rotations) {
+  double squares = 0;
+  std::size_t freedom = 0;
+  for (const auto& [key, readings] : repeated_readings(m, rotations)) {
+    // A running mean loses fewer digits than sums of squares about the group's first value.
+    double mean = 0, count = 0;
+    for (const std::size_t i : readings) {
+      const double value = m.observations[i].value * report_factor(rotations), step = value - mean;
+      mean += step / ++count;
+      squares += step * (value - mean);
+    }
+    freedom += readings.size() - 1;
+  }
+  return pooled(squares, freedom);
+}
+
+std::optional<RepeatNoise> noise_of_repeats_in_set_ups(const model::Measurement& m, bool rotations) {
+  if (m.rows() == 0) return std::nullopt;
+  model::Measurement as_one = m;
+  as_one.states.setup.of.assign(m.states.count, 0);
+  as_one.states.setup.names = {"1"};
+  // In units of mm or deg; first with the mean of each group removed, so that no digits are lost below.
+  std::vector<std::pair<std::vector<double>, std::vector<std::size_t>>> groups;  // values, offset of each
+  std::map<std::pair<std::size_t, int>, std::size_t> offset_of;                  // set-up and kind
+  std::set<int> kinds;
+  std::size_t count = 0;
+  for (const auto& [key, readings] : repeated_readings(as_one, rotations)) {
+    if (readings.size() < 2) continue;
+    auto& [values, offsets] = groups.emplace_back();
+    for (const std::size_t i : readings) {
+      const std::size_t set_up = m.states.of(m.states.setup, m.observations[i].row);
+      values.push_back(m.observations[i].value - m.observations[readings.front()].value);
+      offsets.push_back(offset_of.try_emplace({set_up, key.second}, offset_of.size()).first->second);
+    }
+    kinds.insert(key.second);
+    count += readings.size();
+  }
+  // Means of rows and of set-ups in turn converge to their least-squares values.
+  constexpr int kMostRounds = 100;
+  constexpr double kSettled = 1e-9;  // mm or deg
+  double squares = 0;
+  for (int round = 0; round < kMostRounds; ++round) {
+    std::vector<double> sum(offset_of.size(), 0), number(offset_of.size(), 0);
+    squares = 0;
+    for (auto& [values, offsets] : groups) {
+      const double mean =
+          std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] -= mean;
+        squares += values[i] * values[i];
+        sum[offsets[i]] += values[i];
+        ++number[offsets[i]];
+      }
+    }
+    double largest = 0;
+    for (auto& [values, offsets] : groups)
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const double offset = sum[offsets[i]] / number[offsets[i]];
+        largest = std::max(largest, std::abs(offset));
+        values[i] -= offset;
+      }
+    if (largest < kSettled) break;
+  }
+  const std::size_t estimated = groups.size() + offset_of.size() - kinds.size();
+  const double factor = report_factor(rotations);
+  return pooled(squares * factor * factor, count > estimated ? count - estimated : 0);
 }
 
 namespace {

@@ -47,6 +47,11 @@ struct RepeatNoise {
 /// for rows without u. nullopt: the repeats have less than 5 degrees of freedom.
 std::optional<RepeatNoise> noise_of_repeats(const model::Measurement& m, bool rotations);
 
+/// Returns the same noise from rows that are repeated in other set-ups, beside a mean of each repeated row
+/// and an offset of each set-up (in each kind of reading), because a new alignment changes the offset. Other
+/// changes between the set-ups increase the result. nullopt: less than 5 degrees of freedom.
+std::optional<RepeatNoise> noise_of_repeats_in_set_ups(const model::Measurement& m, bool rotations);
+
 /// Returns the length and the angle that a weighted reading of 1 represents: the rms of u over the fit rows,
 /// or 1 mm and 1 deg if u is absent.
 NoiseUnit noise_unit(const model::Measurement& m);

@@ -313,7 +313,8 @@ NoiseModel white_noise(const NoiseLayout& layout, const Eigen::VectorXd& residua
 
 /// Returns nullopt if the independent noise is negligible. The residual is then model error. If u
 /// is given, u states the whole error of a reading, including its common components: if the readings are
-/// better than u, their components have the size of u, in the same ratios.
+/// better than u, their components have the size of u, in the same ratios. If they are much better than
+/// stated, u counts as independent noise.
 std::optional<NoiseModel> estimate_beside(const NoiseLayout& layout, const Eigen::VectorXd& residual,
                                           const Eigen::MatrixXd& fitted, bool with_u,
                                           const NoiseThresholds& limits) {
@@ -327,6 +328,9 @@ std::optional<NoiseModel> estimate_beside(const NoiseLayout& layout, const Eigen
   if (!with_u) return free.own < limits.least_own_part * free.shared() ? std::nullopt : std::optional(free);
   if (free.log_likelihood == 0) return free;  // too few readings, or no residual
   if (free.independent()) return white_noise(layout, residual, fitted, 1, limits);
+  // A drift that is longer than the record can be large and leave a small scatter.
+  const double seen = std::min(free.total(), white_noise(layout, residual, fitted, 0, limits).own);
+  if (seen < limits.levels.most) return estimate_components(layout, residual, fitted, 1, limits);
   const double scale = std::max(1.0, 1 / free.total());
   for (double* part : {&free.own, &free.pose, &free.run, &free.drift}) *part *= scale;
   return free;
