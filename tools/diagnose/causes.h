@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
+#include "tools/diagnose/findings.h"
 #include "tools/diagnose/types.h"
-#include "tools/diagnose/verdict.h"
 
 namespace vernier::diagnose {
 
