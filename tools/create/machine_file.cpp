@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "tools/model/machine.h"
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
@@ -42,11 +44,25 @@ std::string side_text(const MachinePlan& plan, const std::vector<std::size_t>& s
   return text + (work ? " > workpiece" : " > tool");
 }
 
+/// True if the distances of a printed square show this squareness: Y to X.
+bool is_of_square(const MachinePlan& plan, const std::string& name) {
+  return std::any_of(plan.axes.begin(), plan.axes.end(), [&](const PlannedAxis& axis) {
+    return !axis.rotary() && axis.along() == 1 && name == "EC0" + axis.name;
+  });
+}
+
 /// One static of an error: 0, free in a fit unless the survey cannot see it.
 std::string error_static(const MachinePlan& plan, const std::string& name, const char* unit,
                          const std::string& note) {
-  return fmt::format("      <{0} value=\"0\" nominal=\"0\" unit=\"{1}\"{2} note=\"{3}\"/>\n", name, unit,
-                     plan.positioning_only ? " Hide=\"true\"" : "", note);
+  return fmt::format(
+      "      <{0} value=\"0\" nominal=\"0\" unit=\"{1}\"{2} note=\"{3}\"/>\n", name, unit,
+      plan.positioning_only || (plan.square_only && !is_of_square(plan, name)) ? " Hide=\"true\"" : "", note);
+}
+
+/// The scale of a slide that the distances of a printed square show; empty for other axes.
+std::string scale_of_square(const MachinePlan& plan, const PlannedAxis& axis) {
+  constexpr std::size_t kHorizontal = 2;  // X and Y
+  return plan.square_only && !axis.rotary() && axis.along() < kHorizontal ? "scale" + axis.name : "";
 }
 std::string length_static(const std::string& name, double value, const std::string& note) {
   return fmt::format("      <{0} value=\"{1}\" unit=\"mm\" Hide=\"true\" note=\"{2}\"/>\n", name,
@@ -90,7 +106,8 @@ std::string slide_row(const MachinePlan& plan, std::size_t index, bool work, int
   const double side = work ? -1 : 1;
   std::array<std::string, 6> dof;
   for (std::size_t k = 0; k < 3; ++k) {
-    if (k == axis.along()) dof[k] += with_sign(side, axis.name, true);
+    if (const std::string scale = scale_of_square(plan, axis); k == axis.along())
+      dof[k] += with_sign(side, scale.empty() ? axis.name : axis.name + "*(1+" + scale + ")", true);
     dof[k] += with_sign(side, fmt::format("l{}{}", axis.name, "xyz"[k]), dof[k].empty());
     dof[3 + k] = with_sign(side, fmt::format("r{}{}", axis.name, "xyz"[k]), true);
   }
@@ -158,6 +175,10 @@ std::string slide_statics(const MachinePlan& plan) {
       text += error_static(plan, angle.name, "rad",
                            fmt::format("squareness of {} to {}", plan.axes[i].name, angle.towards));
   }
+  for (const PlannedAxis& axis : plan.axes)
+    if (const std::string scale = scale_of_square(plan, axis); !scale.empty())
+      text += fmt::format("      <{} value=\"0\" nominal=\"0\" note=\"scale of {}: 0.001 is 1 mm per m\"/>\n",
+                          scale, axis.name);
   if (text.empty()) return "";
   return "      <!-- Squareness: angle error between the travels of two axes. X is the datum: its travel is "
          "the reference\n"
@@ -255,7 +276,10 @@ std::string tables_text(const MachinePlan& plan) {
       "and straightness),\n"
       "         rX rY rZ in deg (roll, pitch, yaw). fit names the columns that a fit may change; " +
       std::string(
-          plan.positioning_only
+          plan.square_only
+              ? "with the option errors = square\n"
+                "         none: the distances of a square show the squareness and the scales only"
+          : plan.positioning_only
               ? "with the option errors = positioning only the\n"
                 "         positioning errors along each axis: add the other columns that you measured"
               : "remove columns that your\n"
@@ -263,9 +287,10 @@ std::string tables_text(const MachinePlan& plan) {
       ". -->\n    <comptables>\n";
   for (const PlannedAxis& axis : plan.axes) {
     constexpr const char* kColumns[] = {"X", "Y", "Z", "rX", "rY", "rZ"};
-    text += fmt::format(
-        "      <table axis=\"{}\" fit=\"{}\">\n", axis.name,
-        plan.positioning_only ? kColumns[axis.along() + (axis.rotary() ? 3 : 0)] : "X Y Z rX rY rZ");
+    text += fmt::format("      <table axis=\"{}\" fit=\"{}\">\n", axis.name,
+                        plan.square_only        ? ""
+                        : plan.positioning_only ? kColumns[axis.along() + (axis.rotary() ? 3 : 0)]
+                                                : "X Y Z rX rY rZ");
     for (const double loc : stations_of(axis))
       text += fmt::format(
           "        <station loc=\"{}\" X=\"0\" Y=\"0\" Z=\"0\" rX=\"0\" rY=\"0\" rZ=\"0\"/>\n", number(loc));

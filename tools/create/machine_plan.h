@@ -17,6 +17,7 @@ struct PlannedAxis {
   char direction = 'X';
   bool rollover = false;           // true: the axis rotates without limit, and its range is one turn
   std::array<double, 3> centre{};  // centre of a rotary axis with all other axes at zero, mm
+  std::string joint{};             // name of the joint in the URDF, if it is no name of an axis
   std::vector<double> stations{};  // stations of the table as the user states them; empty: round_stations
   bool rotary() const { return direction >= 'A' && direction <= 'C'; }
   /// Returns the index of the direction: 0, 1, 2 for X, Y, Z, and also for A, B, C.
@@ -43,6 +44,9 @@ struct MachinePlan {
   /// True if only errors are free in a fit that an instrument along each axis can measure. If only such
   /// errors are free, squareness, straightness and angles stay 0.
   bool positioning_only = false;
+  /// True if only errors are free that the distances of a printed square show: the squareness of Y to X, and
+  /// the scales of X and Y. All other errors stay 0.
+  bool square_only = false;
   std::vector<PlannedArtefact> artefacts;
 };
 

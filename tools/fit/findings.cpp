@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/fit/coverage/bow_of_plane.h"
 #include "tools/fit/coverage/reading_direction.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/sanity.h"
@@ -186,24 +187,32 @@ std::string varied_lengths(const model::Machine& machine, const model::Measureme
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Returns the names of the touched planes of unknown position if all fit rows touch one of these, and a
-/// probe beside the tool point was used. Then a bow of a plane gives nearly the same readings as an axis that
-/// is not straight: the bow is at the touched point, the error of the axis at its position.
-std::string planes_of_probe(const model::Machine& machine, const model::Measurement& m) {
+/// The normal of a touched plane in workpiece coordinates, as the fit estimated it.
+Vector3d normal_of(const FitResult& result, const std::string& plane) {
+  for (const ThingEstimate& thing : result.things)
+    if (thing.name == plane && !thing.in_measuring_frame && thing.direction) return *thing.direction;
+  return Vector3d::UnitZ();
+}
+
+/// Returns the names of the planes of unknown position that a probe beside the tool point touched, if no
+/// other reading determines a bow of the axes over the plane. Then a bow of the plane gives nearly the same
+/// readings as an axis that is not straight: the bow is at the touched point, the error of the axis at its
+/// position.
+std::string planes_of_probe(const FitResult& result, const model::Measurement& m) {
   std::set<std::string> names;
-  bool beside = false;
   for (std::size_t row = 0; row < m.rows(); ++row) {
-    if (m.check[row] != 0) continue;
     const std::size_t thing = m.thing_of(row);
-    if (thing == model::kNoThing || m.things[thing].artefact.type != model::ArtefactType::kPlane ||
-        m.things[thing].in_measuring_frame())
-      return {};
-    names.insert(m.things[thing].label);
+    if (m.check[row] != 0 || thing == model::kNoThing ||
+        m.things[thing].artefact.type != model::ArtefactType::kPlane || m.things[thing].in_measuring_frame())
+      continue;
     for (const char* const column : format::columns::kProbe)
-      if (const auto input = machine.find_input(column))
-        beside = beside || m.states.input[*input][static_cast<Index>(row)] != 0;
+      if (const auto input = result.machine.find_input(column))
+        if (m.states.input[*input][static_cast<Index>(row)] != 0) names.insert(m.things[thing].label);
   }
-  return beside ? fmt::format("{}", fmt::join(names, ", ")) : "";
+  std::erase_if(names, [&](const std::string& name) {
+    return bow_is_read(result.machine, m, name, normal_of(result, name));
+  });
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 /// Findings about lengths that give the machine its size and whose own errors no reading of this fit shows.
@@ -321,13 +330,12 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
       !far.empty())
     list.push_back({"far-from-nominal", 1, far});
   add_exact_lengths(result, m, list);
-  if (const std::string names = planes_of_probe(result.machine, m); !names.empty())
-    list.push_back(
-        {kFlatnessAssumed, 0,
-         fmt::format(
-             "{} was taken as flat, and all rows touch it: a bow of it counts as an error of the axes, at "
-             "the position of the axes and not where the probe touched.",
-             names)});
+  if (const std::string names = planes_of_probe(result, m); !names.empty())
+    list.push_back({kFlatnessAssumed, 0,
+                    fmt::format("{} was taken as flat, and no other reading shows its bow: a bow of it "
+                                "counts as an error of the "
+                                "axes, at the position of the axes and not where the probe touched.",
+                                names)});
   add_axes_that_stood(result.machine, record, list);
   const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],
                          1e3 * record.discrepancy_mm[2]);

@@ -28,10 +28,10 @@ Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurem
 /// dependences), `not-distinguished` (number of alternatives), `absurd`, `not-converged`, `size-unknown` (no
 /// reading has a known length; value: the plausible share), `taken-as-exact` (a length that gives the machine
 /// its size, and whose own error no reading shows; value 0), `far-from-nominal` (a fit of touches gave
-/// another machine than that of the file), `flatness-assumed` (all rows touch planes of unknown position,
-/// some of them with a probe beside the tool point; value 0), `stood-still` (number of axes that had one
-/// position in all fit rows, while others moved). `record`: the fit record, complete except for
-/// the findings.
+/// another machine than that of the file), `flatness-assumed` (a probe beside the tool point touched a
+/// plane of unknown position, and no other reading determines a bow of the axes over this plane; value 0),
+/// `stood-still` (number of axes that had one position in all fit rows, while others moved). `record`: the
+/// fit record, complete except for the findings.
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);
 

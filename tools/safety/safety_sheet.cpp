@@ -68,6 +68,17 @@ const RuleText& text_of(SafetyRule rule) {
   return kTexts[static_cast<std::size_t>(rule)];
 }
 
+/// True if the fit changed the value of a parameter visibly beside its standard uncertainty.
+bool was_changed(const model::Machine& machine, std::size_t i) {
+  constexpr double kOfStd = 0.01;  // a smaller change is not visible beside two digits of the uncertainty
+  const model::FitRecord& record = *machine.fitted;
+  const auto at = static_cast<Eigen::Index>(i);
+  if (at >= record.values.size() || at >= record.factor.rows()) return true;
+  const auto known = machine.find_static(record.parameters[i]);
+  const double nominal = known ? machine.statics[*known].nominal.value_or(0) : 0;
+  return std::abs(record.values[at] - nominal) > kOfStd * record.factor.row(at).norm();
+}
+
 class Judge {
  public:
   Judge(const model::Machine& machine, const std::vector<SafetyRule>& accepted)
@@ -194,35 +205,8 @@ class Judge {
     for (const model::Tool& tool : machine_.tools)
       judge_tool(model::with_tool(machine_, tool.point), "tool " + tool.name);
     add(SafetyRule::kUncertainty, worst, of);
-    sheet_.not_measured = not_measured();
+    sheet_.not_measured = safety::not_measured(machine_);
     sheet_.stale = reach.stale();
-  }
-
-  /// Parameters of the last fit that no reading determines and none changed; a column of a table if this
-  /// holds for all of it.
-  std::string not_measured() const {
-    const model::FitRecord& record = *machine_.fitted;
-    std::vector<std::string> names;  // in the order of the fit
-    std::set<std::string> measured;
-    for (std::size_t i = 0; i < std::min(record.parameters.size(), record.origins.size()); ++i) {
-      const std::string name = model::without_station(record.parameters[i]);
-      if (name.starts_with("BaseShift") || name.starts_with("ToolShift")) continue;
-      if (record.origins[i] != fit::origin_name(fit::Origin::kPrior) || was_changed(record, i))
-        measured.insert(name);
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    }
-    std::erase_if(names, [&](const std::string& name) { return measured.contains(name); });
-    return fmt::format("{}", fmt::join(names, ","));
-  }
-
-  /// True if the fit changed the value of a parameter visibly beside its standard uncertainty.
-  bool was_changed(const model::FitRecord& record, std::size_t i) const {
-    constexpr double kOfStd = 0.01;  // a smaller change is not visible beside two digits of the uncertainty
-    const auto at = static_cast<Eigen::Index>(i);
-    if (at >= record.values.size() || at >= record.factor.rows()) return true;
-    const auto known = machine_.find_static(record.parameters[i]);
-    const double nominal = known ? machine_.statics[*known].nominal.value_or(0) : 0;
-    return std::abs(record.values[at] - nominal) > kOfStd * record.factor.row(at).norm();
   }
 
   /// Size of the correction with this tool, and the share that the noise of a good fit may leave.
@@ -423,12 +407,11 @@ std::string SafetySheet::refusal() const {
   std::string text = fmt::format("not safe to run: {}", figures(worst));
   if (!worst.culprit.empty()) text += ": " + worst.culprit;
   text += fmt::format(" ({})", worst.reason);
-  if (worst.rule == SafetyRule::kUncertainty && !not_measured.empty())
-    text += fmt::format(
-        "; measure more poses, or fit the machine again without the parameters that no reading determines: "
-        "fit --hold \"{}\"; a correction that is nearly zero fails this rule too, and can be accepted",
-        not_measured);
-  else if (const std::string remedy = text_of(worst.rule).remedy; !remedy.empty())
+  const bool holds = !not_measured.empty() && std::any_of(failed.begin(), failed.end(), [](const auto* one) {
+    return one->rule == SafetyRule::kUncertainty;
+  });
+  if (const std::string remedy = text_of(worst.rule).remedy;
+      !remedy.empty() && !(holds && worst.rule == SafetyRule::kUncertainty))
     text += "; " + remedy;
   std::string accept;
   for (const SafetyFinding* finding : failed) {
@@ -437,7 +420,42 @@ std::string SafetySheet::refusal() const {
                           finding->culprit.empty() ? "" : ": " + finding->culprit);
     accept += fmt::format(" --accept {}", rule_name(finding->rule));
   }
+  if (holds)
+    text += fmt::format(
+        "; measure more poses, or fit the machine again without the parameters that no reading determines: "
+        "fit --hold \"{}\"; a correction that is nearly zero fails this rule too, and can be accepted",
+        not_measured);
   return text + fmt::format(";{} overrides", accept);
+}
+
+std::string not_measured(const model::Machine& machine) {
+  if (!machine.fitted) return {};
+  const model::FitRecord& record = *machine.fitted;
+  struct Column {
+    std::string name;
+    std::size_t entries = 0, open = 0;
+    bool by_data = false, changed = false;
+  };
+  std::vector<Column> columns;  // in the order of the fit
+  for (std::size_t i = 0; i < std::min(record.parameters.size(), record.origins.size()); ++i) {
+    const std::string name = model::without_station(record.parameters[i]);
+    if (name.starts_with("BaseShift") || name.starts_with("ToolShift")) continue;
+    const auto known = std::find_if(columns.begin(), columns.end(),
+                                    [&](const Column& column) { return column.name == name; });
+    Column& column = known != columns.end() ? *known : columns.emplace_back(Column{name});
+    const bool open = record.origins[i] == fit::origin_name(fit::Origin::kPrior);
+    ++column.entries;
+    column.open += open ? 1 : 0;
+    column.by_data = column.by_data || record.origins[i] == fit::origin_name(fit::Origin::kData);
+    column.changed = column.changed || (open && was_changed(machine, i));
+  }
+  std::vector<std::string> names;
+  for (const Column& column : columns) {
+    const bool untouched = column.open == column.entries && !column.changed;
+    const bool half = column.entries > 1 && 2 * column.open >= column.entries && !column.by_data;
+    if (untouched || half) names.push_back(column.name);
+  }
+  return fmt::format("{}", fmt::join(names, ","));
 }
 
 SafetySheet safety_sheet(const model::Machine& machine, const std::vector<SafetyRule>& accepted) {

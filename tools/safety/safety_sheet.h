@@ -50,8 +50,7 @@ struct SafetySheet {
   /// Names of parameters that were added or changed by hand after the fit. The uncertainty of a parameter
   /// that was changed by hand is the difference between its present value and its fitted value.
   std::vector<std::string> stale;
-  /// Parameters and columns of tables that no reading determines, separated by commas: those that `fit
-  /// --hold` leaves out.
+  /// The result of not_measured() for this machine.
   std::string not_measured;
   /// Adds the finding of one rule to the sheet. Throws std::logic_error if the value is not finite.
   void judge(SafetyRule rule, std::optional<double> value, std::string culprit,
@@ -71,6 +70,11 @@ struct SafetySheet {
 /// input. `accepted`: rules that the user accepts although they are not met. Throws InputError if an axis has
 /// no range.
 SafetySheet safety_sheet(const model::Machine& machine, const std::vector<SafetyRule>& accepted = {});
+
+/// Returns the parameters and columns of tables that the readings of the last fit do not determine, separated
+/// by commas, as `fit --hold` reads them: all entries stay at nominal; or, for the column of a table, half of
+/// its entries or more are as uncertain as nominal, and no entry comes from the data. Empty without a fit.
+std::string not_measured(const model::Machine& machine);
 
 /// Converts names of rules to rules. Throws InputError if a name is not the name of a rule. The message lists
 /// all rules.

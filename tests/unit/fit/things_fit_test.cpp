@@ -280,6 +280,36 @@ TEST(FitOfThings, APlaneThatAProbeBesideTheToolTouchedIsSaidToBeTakenAsFlat) {
   EXPECT_FALSE(has(fit_of_probed_bed(0, false), kFlatnessAssumed));
 }
 
+/// The finding must not depend on the presence of other rows, but on what they read.
+TEST(FitOfThings, OnlyReadingsAlongItsNormalShowTheBowOfATouchedPlane) {
+  const model::Machine printer = model::parse_machine(
+      R"XML(<machine name="printer"><variables><static><sag value="0" nominal="0" unit="mm"/>
+  <EC0Y value="0" nominal="0" unit="rad"/></static><machineaxes><X/><Y/><Z/></machineaxes>
+  <inputs><probeX unit="mm" reference="0"/><probeY unit="mm" reference="0"/></inputs>
+  <artefact name="bed" type="plane"/></variables><transforms branch="tool">
+  <sixdof n="1" X="X-EC0Y*Y" Y="Y" Z="Z+sag*X*X/10000"/><sixdof n="2" X="probeX" Y="probeY"/></transforms></machine>)XML",
+      "printer.xml");
+  std::string bed = "X[mm],Y[mm],Z[mm],probeX[mm],probeY[mm],on,distance[mm],from,z[mm],u[mm]\n";
+  for (const double x : {0, 50, 100, 150, 200})
+    for (const double y : {0, 50, 150})
+      bed += fmt::format("{},{},{:.6f},-30,0,bed,,,,0.005\n", x, y, 1e-5 * x * (200 - x));
+  const auto fitted = [&](const std::string& rows) {
+    return vernier::fit::fit(printer, model::parse_measurement(bed + rows, "bed.csv", printer), {});
+  };
+  // Distances in a plane of one height, as of a printed square
+  EXPECT_TRUE(has(fitted("30,30,0.2,0,0,,,,,0.02\n200,200,0.2,0,0,,240.4,16,,0.02\n30,200,0.2,0,0,,,,,0.02\n"
+                         "200,30,0.2,0,0,,240.1,18,,0.02\n"),
+                  kFlatnessAssumed));
+  // Heights along one line, then over the whole bed
+  std::string line, grid;
+  for (const double x : {0, 100, 200}) {
+    line += fmt::format("{},50,20,0,0,,,,20,0.005\n", x);
+    for (const double y : {0, 75, 150}) grid += fmt::format("{},{},20,0,0,,,,20,0.005\n", x, y);
+  }
+  EXPECT_TRUE(has(fitted(line), kFlatnessAssumed));
+  EXPECT_FALSE(has(fitted(grid), kFlatnessAssumed));
+}
+
 /// A bed mesh moves Z by the height of the bed only: the table of Z stays at 0 over its whole travel,
 /// although the bed has a shape that the model does not contain.
 TEST(FitOfThings, ATableOfAnAxisThatHardlyMovedStaysAtNominal) {

@@ -119,6 +119,7 @@ create::MachinePlan plan_of(const NewArguments& arguments, const CLI::App& comma
       arguments.urdf.empty() ? plan_of_words(arguments, command) : plan_of_urdf(arguments, command);
   if (!arguments.name.empty()) plan.name = arguments.name;
   plan.positioning_only = arguments.errors == "positioning";
+  plan.square_only = arguments.errors == "square";
   if (!plan.arm.empty() && !arguments.stations.empty())
     throw text::InputError("--stations: this option is not for the type robot, whose axes have no tables");
   for (const std::string& words : arguments.stations) create::plan_stations(plan.axes, words);
@@ -128,10 +129,11 @@ create::MachinePlan plan_of(const NewArguments& arguments, const CLI::App& comma
   if (plan.artefacts.empty() &&
       create::reading_of(arguments.reading).list().front() == format::ReadingForm::kOn)
     plan.artefacts.push_back({"bed", "plane"});
-  if (plan.positioning_only && !plan.arm.empty())
+  if ((plan.positioning_only || plan.square_only) && !plan.arm.empty())
     throw text::InputError(
-        "--errors positioning is only for machines with linear axes; a robot always has all errors of its "
-        "joints and links");
+        fmt::format("--errors {} is only for machines with linear axes; a robot always has all errors of its "
+                    "joints and links",
+                    arguments.errors));
   return plan;
 }
 
@@ -207,8 +209,9 @@ void register_new(CLI::App& vernier) {
   command
       ->add_option("--errors", arguments->errors,
                    "parameters that a fit may estimate: all, or positioning (errors along each axis, for an "
-                   "interferometer or a dial gauge)")
-      ->check(CLI::IsMember({"all", "positioning"}))
+                   "interferometer or a dial gauge), or square (squareness of Y to X and scales of X and Y, "
+                   "for the distances of a printed square)")
+      ->check(CLI::IsMember({"all", "positioning", "square"}))
       ->capture_default_str();
   command
       ->add_option(

@@ -3,18 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/out/exporting.h"
+#include "tools/effects/probe_offset.h"
 #include "tools/exchange/printer/correction.h"
 #include "tools/exchange/printer/firmware_files.h"
 #include "tools/fit/findings.h"
 #include "tools/kinematics/at.h"
 #include "tools/maths/factors.h"
 #include "tools/model/fit_record.h"
+#include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
+#include "tools/safety/safety_sheet.h"
 #include "tools/text/error.h"
+#include "tools/text/files.h"
 
 namespace vernier::commands::exchange_cli {
 namespace {
@@ -90,7 +96,7 @@ void print_shape(std::FILE* out, const exchange::BedShape& shape) {
 /// Errors of the heights that the touches do not determine, or that the files do not contain.
 void add_left_out_of_bed(std::vector<exchange::LeftOut>& left, const exchange::Bed& bed,
                          const model::Machine& machine) {
-  if (!bed.shape && machine.fitted->rms_mm * 1000 > exchange::kNothing_um)
+  if (!bed.shape && machine.fitted && machine.fitted->rms_mm * 1000 > exchange::kNothing_um)
     left.push_back(
         {"heights of the touches that the plane of the bed and the model do not contain, rms of the "
          "last fit (with --touches FILE the heights contain them)",
@@ -103,17 +109,37 @@ void add_left_out_of_bed(std::vector<exchange::LeftOut>& left, const exchange::B
          bed.shape->undetermined_um});
 }
 
+/// Parameters of the last fit whose values the readings do not determine: for fit --hold.
+std::string remedy_of_unmeasured(const model::Machine& machine) {
+  const std::string held = safety::not_measured(machine);
+  if (held.empty()) return "";
+  std::string scales;
+  for (const char* const axis : exchange::kLetters)
+    if (axis != exchange::kLetters.back())
+      scales += fmt::format("{}scalefactor.{}", scales.empty() ? "" : ",", axis);
+  return fmt::format(
+      "To measure squareness and scales with the distances of a printed square, fit a machine file of "
+      "vernier "
+      "new --errors square, or fit this machine file with --hold \"{}\" --free {}",
+      held, scales);
+}
+
 /// Skews and steps that the files do not contain, because the last fit did not measure them.
 void add_unmeasured(std::vector<exchange::LeftOut>& left, const exchange::PrinterCorrection& correction) {
   for (const exchange::UnmeasuredPart& part : correction.unmeasured) {
-    if (part.um <= exchange::kNothing_um) continue;
     constexpr double kUmPerM = 1e6;
     const bool skew = part.name.size() == 2;
+    const std::string what = fmt::format("{} {}", skew ? "squareness" : "scale", part.name);
+    if (part.um <= exchange::kNothing_um) {
+      left.push_back({what + ": not measured (the last fit had no parameter of it)"});
+      left.back().measured = false;
+      continue;
+    }
     const std::string value = skew ? fmt::format("{:.3g} deg", part.value / maths::kRadPerDeg)
                                    : fmt::format("{:.3g} um/m", part.value * kUmPerM);
-    left.push_back({fmt::format("{} {}: the readings of the last fit do not determine it (value of the model "
+    left.push_back({fmt::format("{}: the readings of the last fit do not determine it (value of the model "
                                 "{}), and the files do not contain it",
-                                skew ? "squareness" : "scale", part.name, value),
+                                what, value),
                     part.um});
     left.back().measured = false;
   }
@@ -130,24 +156,20 @@ Json errors_json(const exchange::PrinterErrors& errors) {
 
 /// True if the touches of the last fit do not distinguish the bed from the axes.
 bool is_bed_or_axes(const model::Machine& machine) {
+  if (!machine.fitted) return false;
   const auto& findings = machine.fitted->findings;
   return std::any_of(findings.begin(), findings.end(),
                      [](const auto& finding) { return finding.code == fit::kFlatnessAssumed; });
 }
 
-/// Returns the machine without the errors of its axes. If touches of the bed are all that the fit had, some
-/// of them with a probe beside the nozzle, the heights follow the touches like the mesh of the firmware
-/// itself. The errors of the fitted axes would be at other positions than the heights that show them.
-model::Machine with_straight_axes(const model::Machine& fitted, const exchange::Bed& bed,
-                                  const PrinterArguments& arguments) {
+void require_touches(const exchange::Bed& bed, const PrinterArguments& arguments) {
   if (arguments.touches.empty())
     throw text::InputError(
         {arguments.common.machine, 0}, bed.name,
-        "the fit had only touches of this plane and took it as flat: touches of a probe beside the nozzle do "
+        "the fit took this plane as flat: touches of a probe beside the nozzle do "
         "not distinguish a bow of the bed from axes that are not straight. Give the touches (--touches "
         "FILE), "
         "and a few touches of the nozzle if possible (a second --touches); --bed none leaves the bed out");
-  return model::nominal_machine(fitted);
 }
 
 /// Errors by inputs, speed, travel since reversal and time: the files are those of one state.
@@ -161,53 +183,164 @@ void add_left_out_of_state(std::vector<exchange::LeftOut>& left, const model::Ma
       if (!one.other_axis && !one.of_input) left.push_back(std::move(one));
 }
 
-void export_printer(const PrinterArguments& arguments, Firmware firmware, const char* name) {
-  const ExchangeArguments& common = arguments.common;
-  const model::Machine fitted = read_model(common.machine);
-  const exchange::PresentSetting present = present_of(arguments);
-  if (firmware == Firmware::kGrbl && !present.steps)
-    throw text::InputError(
-        "grbl can store only steps per mm: give the present steps per mm with --steps X,Y,Z");
-  const exchange::ThreeAxes axes = exchange::three_axes(fitted);
-  const exchange::PrinterFeatures features = exchange::features_of(firmware, present);
-  std::optional<exchange::Bed> bed =
-      features.mesh && arguments.bed != kNoBed ? exchange::bed_of(fitted, axes, arguments.bed) : std::nullopt;
-  const bool follows_touches = bed && is_bed_or_axes(fitted);
-  if (!follows_touches) require_safe(fitted, common, true);
-  const model::Machine machine = follows_touches ? with_straight_axes(fitted, *bed, arguments) : fitted;
-  const model::States at = state_of(machine, common);
-  if (!arguments.touches.empty() && !bed)
-    throw text::InputError(
-        "--touches: the last fit of this machine has no plane that was touched, or --bed is none");
+/// The machines of one export, and the bed.
+struct PrinterModel {
+  model::Machine fitted;
+  /// True: the heights follow the touches with straight axes, like the mesh of the firmware itself. Then the
+  /// last fit does not distinguish the bed from the axes (errors of its axes would be at other positions than
+  /// the heights that show them), or it did not measure the heights of the axes.
+  bool follows_touches = false;
+  model::Machine of_heights;  // with straight axes if the heights follow the touches
+  std::optional<exchange::Bed> bed;
+  model::States at;
+};
+
+/// Declares the probe of the touches, if the last fit had no touches.
+model::Machine with_probe_of_touches(const model::Machine& machine, const PrinterArguments& arguments) {
+  const model::CompletedText complete =
+      effects::with_probe_offset(text::read_file(arguments.common.machine), machine,
+                                 model::read_measurement(arguments.touches, machine));
+  return model::parse_machine(complete.text, arguments.common.machine);
+}
+
+PrinterModel model_of(const PrinterArguments& arguments, const exchange::PrinterFeatures& features) {
+  PrinterModel model{read_model(arguments.common.machine), false, {}, {}, {}};
+  const exchange::ThreeAxes axes = exchange::three_axes(model.fitted);
+  const bool with_bed = features.mesh && arguments.bed != kNoBed;
+  if (!arguments.touches.empty() && !with_bed)
+    throw text::InputError("--touches: the heights follow no bed with --bed none");
+  const bool fit_touched = model.fitted.fitted && !model.fitted.fitted->planes.empty();
+  if (!arguments.touches.empty() && !fit_touched) {
+    model.fitted = with_probe_of_touches(model.fitted, arguments);
+    model.bed = exchange::bed_of_touches(
+        model.fitted, axes, model::read_measurement(arguments.touches, model.fitted), arguments.bed);
+    model.follows_touches =
+        !exchange::heights_are_measured(model.fitted, axes, state_of(model.fitted, arguments.common));
+  } else if (with_bed) {
+    model.bed = exchange::bed_of(model.fitted, axes, arguments.bed);
+    model.follows_touches = model.bed && is_bed_or_axes(model.fitted);
+    if (model.follows_touches) require_touches(*model.bed, arguments);
+  }
+  model.of_heights = model.follows_touches ? model::nominal_machine(model.fitted) : model.fitted;
+  model.at = state_of(model.fitted, arguments.common);
   if (!arguments.touches.empty())
-    exchange::give_shape(*bed, machine, axes, model::read_measurement(arguments.touches, machine));
-  exchange::PrinterCorrection correction =
-      exchange::printer_correction(machine, axes, features, at, common.tolerance_um, bed);
-  const std::vector<exchange::ConfigurationFile> texts =
-      exchange::firmware_files(firmware, present, machine.name, correction);
-  const exchange::PrinterErrors errors = exchange::printer_errors(machine, axes, correction, at, bed);
-  refuse_without_errors(common, errors.rms_before_um);
-  const Json files = write_folder(common, texts);
-  if (bed && bed->shape) print_shape(human_stream(common.json), *bed->shape);
+    exchange::give_shape(*model.bed, model.of_heights, axes,
+                         model::read_measurement(arguments.touches, model.of_heights));
+  return model;
+}
+
+/// Refuses heights that would raise the residual of the touches that they follow.
+void require_better_heights(const std::optional<exchange::TouchResidual>& touches) {
+  if (!touches || !touches->worse()) return;
+  throw text::LimitNotMet(fmt::format(
+      "the heights would raise the deviation at the {} touches of the {} from {:.4g} to {:.4g} um rms: the "
+      "errors of the fitted axes do not agree with these touches; nothing is written. Fit the touches of the "
+      "bed alone (vernier fit MACHINE TOUCHES), and export that machine file; or give touches of the nozzle "
+      "(a second --touches)",
+      touches->touches, touches->of_nozzle ? "nozzle" : "probe", touches->before_um, touches->after_um));
+}
+
+void refuse_empty(const exchange::PrinterCorrection& correction, const model::Machine& machine) {
+  if (!correction.empty()) return;
+  const std::string remedy = remedy_of_unmeasured(machine);
+  throw text::LimitNotMet(fmt::format(
+      "the last fit measured no squareness, no scale and no height that this firmware could correct; nothing "
+      "is written. {}",
+      remedy.empty() ? "Give the touches of the bed with --touches, or the present steps with --steps"
+                     : remedy));
+}
+
+void print_errors(const PrinterArguments& arguments, const PrinterModel& model,
+                  const exchange::PrinterErrors& errors,
+                  const std::optional<exchange::TouchResidual>& touches) {
+  std::FILE* const out = human_stream(arguments.common.json);
+  const std::optional<exchange::Bed>& bed = model.bed;
+  if (bed && bed->shape) print_shape(out, *bed->shape);
   if (bed)
-    fmt::print(human_stream(common.json),
-               "the heights follow the {} \"{}\", X {:g} to {:g} mm, Y {:g} to {:g} mm\n",
+    fmt::print(out, "the heights follow the {} \"{}\", X {:g} to {:g} mm, Y {:g} to {:g} mm\n",
                bed->shape ? "bed" : "plane", bed->name, bed->low[0], bed->high[0], bed->low[1], bed->high[1]);
-  if (follows_touches)
+  if (touches)
+    fmt::print(out,
+               "deviation of the height at the {} touches of the {}: {:.4g} um rms without the files, {:.4g} "
+               "um rms with the files\n",
+               touches->touches, touches->of_nozzle ? "nozzle" : "probe", touches->before_um,
+               touches->after_um);
+  if (model.follows_touches)
     fmt::print(
-        human_stream(common.json),
+        out,
         "with straight axes the touches show an error of the height of {:.4g} um rms ({} positions). The "
         "files hold these heights to {:.4g} um rms; that is not the accuracy of the machine.\n",
         errors.rms_before_um, errors.positions, errors.rms_after_um);
   else
-    print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);
+    print_rms(arguments.common, errors.positions, errors.rms_before_um, errors.rms_after_um);
+}
+
+/// The squareness and the scales that the files contain.
+void print_straight_parts(std::FILE* out, const exchange::PrinterCorrection& correction) {
+  constexpr double kUmPerM = 1e6;
+  const std::array<std::pair<const char*, double>, 3> skews = {
+      {{"XY", correction.xy}, {"XZ", correction.xz}, {"YZ", correction.yz}}};
+  for (const auto& [name, tangent] : skews)
+    if (tangent != 0)
+      fmt::print(out, "squareness {}: the files correct {:.4g} deg\n", name, -tangent / maths::kRadPerDeg);
+  for (std::size_t i = 0; i < correction.steps.size(); ++i)
+    if (correction.steps[i] != 1)
+      fmt::print(out, "scale {}: the files correct {:.4g} um/m\n", exchange::kLetters[i],
+                 -(correction.steps[i] - 1) * kUmPerM);
+}
+
+/// The correction without skew and steps: what remains of the heights is that of straight axes.
+exchange::PrinterCorrection only_heights(exchange::PrinterCorrection correction) {
+  correction.xy = correction.xz = correction.yz = 0;
+  correction.steps = {1, 1, 1};
+  return correction;
+}
+
+void export_printer(const PrinterArguments& arguments, Firmware firmware, const char* name) {
+  const ExchangeArguments& common = arguments.common;
+  const exchange::PresentSetting present = present_of(arguments);
+  if (firmware == Firmware::kGrbl && !present.steps)
+    throw text::InputError(
+        "grbl can store only steps per mm: give the present steps per mm with --steps X,Y,Z");
+  exchange::PrinterFeatures features = exchange::features_of(firmware, present);
+  const PrinterModel model = model_of(arguments, features);
+  const auto& [fitted, follows_touches, machine, bed, at] = model;
+  const exchange::ThreeAxes axes = exchange::three_axes(fitted);
+  if (!follows_touches) require_safe(fitted, common, true);
+  const bool unmeasured_heights = features.mesh && !bed && !exchange::heights_are_measured(fitted, axes, at);
+  if (unmeasured_heights) features.mesh = false;
+  exchange::PrinterCorrection correction = exchange::printer_correction(
+      machine, axes, features, at, common.tolerance_um, bed, follows_touches ? &fitted : nullptr);
+  const std::vector<exchange::ConfigurationFile> texts =
+      exchange::firmware_files(firmware, present, machine.name, correction);
+  const exchange::PrinterErrors errors = exchange::printer_errors(
+      machine, axes, follows_touches ? only_heights(correction) : correction, at, bed);
+  refuse_without_errors(common, errors.rms_before_um);
+  refuse_empty(correction, fitted);
+  const std::optional<exchange::TouchResidual> touches =
+      bed ? exchange::touch_residual(machine, axes, correction, at, *bed) : std::nullopt;
+  require_better_heights(touches);
+  const Json files = write_folder(common, texts);
+  print_errors(arguments, model, errors, touches);
+  print_straight_parts(human_stream(common.json), correction);
   Json extra = errors_json(errors);
   std::vector<exchange::LeftOut> left = remaining(errors.after_um);
   add_unmeasured(left, correction);
+  if (unmeasured_heights) {
+    left.push_back(
+        {"heights of the bed: not measured, the files contain no heights (--touches FILE gives the "
+         "touches of the bed)"});
+    left.back().measured = false;
+  }
   add_left_out_of_state(left, machine, axes, correction, at, bed);
   if (bed) {
     extra["bed"] = bed->name;
     if (bed->shape) extra["bed_shape"] = shape_json(*bed->shape);
+    if (touches)
+      extra["bed_shape"]["residual"] = {{"touches", touches->touches},
+                                        {"of_nozzle", touches->of_nozzle},
+                                        {"rms_before_um", touches->before_um},
+                                        {"rms_after_um", touches->after_um}};
     add_left_out_of_bed(left, *bed, machine);
     extra["errors"]["beyond_bed_um"] = errors.beyond_bed_um;
     if (errors.beyond_bed_um > errors.after_um[2] + exchange::kNothing_um)
@@ -216,6 +349,8 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
            errors.beyond_bed_um});
   }
   finish(machine, common, name, left, files, {}, true, extra);
+  const std::string remedy = correction.unmeasured.empty() ? "" : remedy_of_unmeasured(fitted);
+  if (!remedy.empty() && !correction.measured("XY")) fmt::print(human_stream(common.json), "{}\n", remedy);
 }
 
 void add_printer(CLI::App* parent, const char* name, const char* what, const char* steps, Firmware firmware) {

@@ -90,51 +90,78 @@ StraightParts straight_parts(const Matrix3Xd& points, const Matrix3Xd& offset) {
   return {x[1] + y[0], x[2], y[2], x[0], y[1], z[2]};
 }
 
-/// Standard uncertainty of the straight parts by the parameters that no reading of the last fit determines.
-StraightParts open_std(const model::Machine& machine, const ThreeAxes& axes, const model::States& at) {
-  StraightParts squares = StraightParts::Zero();
-  if (!machine.fitted || !machine.fitted->open_known) return squares;
-  constexpr std::size_t kFewPositions = 3;  // of each axis: the parts are linear in the positions
-  const Matrix3Xd points = grid(axes, {kFewPositions, kFewPositions, kFewPositions});
+/// Returns the squares of the changes of `of` (a function of a machine) by the columns of `factor`, which is
+/// a factor of the covariance of the last fit: the variance of `of`.
+template <class Of>
+VectorXd variance_of(const model::Machine& machine, const Eigen::MatrixXd& factor, const Of& of) {
   const model::FitRecord& record = *machine.fitted;
   model::Machine moved = machine;
   moved.base_shifts.clear();
   moved.tool_shifts.clear();
   const model::ParameterSet parameters(moved, {});
-  const VectorXd values = parameters.get(moved);
-  const StraightParts as_fitted = straight_parts(points, needed(moved, axes, points, at));
-  for (Index column = 0; column < record.open.cols(); ++column) {
+  const VectorXd values = parameters.get(moved), as_fitted = of(moved);
+  VectorXd squares = VectorXd::Zero(as_fitted.size());
+  for (Index column = 0; column < factor.cols(); ++column) {
     VectorXd shifted = values;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       const auto place = std::find(record.parameters.begin(), record.parameters.end(), parameters[i].name);
       if (place == record.parameters.end()) continue;
-      shifted[static_cast<Index>(i)] +=
-          record.open(static_cast<Index>(place - record.parameters.begin()), column);
+      shifted[static_cast<Index>(i)] += factor(static_cast<Index>(place - record.parameters.begin()), column);
     }
     parameters.set(moved, shifted);
-    squares += (straight_parts(points, needed(moved, axes, points, at)) - as_fitted).cwiseAbs2();
+    squares += (of(moved) - as_fitted).cwiseAbs2();
   }
-  return squares.cwiseSqrt();
+  return squares;
 }
 
-/// Fits skew and steps, without the parts that the last fit did not measure.
+/// Standard uncertainty of the straight parts: by the parameters that no reading of the last fit determines,
+/// or by all parameters. 0 if the last fit is not known.
+StraightParts std_of_parts(const model::Machine& machine, const ThreeAxes& axes, const model::States& at,
+                           bool by_all) {
+  if (!machine.fitted || !machine.fitted->open_known) return StraightParts::Zero();
+  constexpr std::size_t kFewPositions = 3;  // of each axis: the parts are linear in the positions
+  const Matrix3Xd points = grid(axes, {kFewPositions, kFewPositions, kFewPositions});
+  return variance_of(machine, by_all ? machine.fitted->factor : machine.fitted->open,
+                     [&](const model::Machine& moved) -> VectorXd {
+                       return straight_parts(points, needed(moved, axes, points, at));
+                     })
+      .cwiseSqrt();
+}
+
+/// Heights at the lowest Z without a constant offset, mm.
+VectorXd heights_of(const model::Machine& machine, const ThreeAxes& axes, const model::States& at) {
+  constexpr std::size_t kSide = 5;
+  const VectorXd heights = needed(machine, axes, grid(axes, {kSide, kSide, 1}), at).row(2);
+  return heights.array() - heights.mean();
+}
+
+/// As in the safety sheet: a correction whose standard uncertainty exceeds half of its value may increase the
+/// error.
+constexpr double kMostShare = 0.5;
+
+/// Fits skew and steps, without the parts that the last fit did not measure. `by_all`: the whole standard
+/// uncertainty counts.
 void fit_straight_parts(PrinterCorrection& correction, const PrinterFeatures& features,
-                        const model::Machine& machine, const ThreeAxes& axes, const model::States& at) {
+                        const model::Machine& machine, const ThreeAxes& axes, const model::States& at,
+                        bool by_all) {
   constexpr std::size_t kPositions = 7;  // of each axis
-  // As in the safety sheet: a correction whose standard uncertainty exceeds half of its value may increase
-  // the error.
-  constexpr double kMostShare = 0.5;
   const Matrix3Xd points = grid(axes, {kPositions, kPositions, kPositions});
   StraightParts parts = straight_parts(points, needed(machine, axes, points, at));
-  const StraightParts open = open_std(machine, axes, at);
+  const StraightParts std = std_of_parts(machine, axes, at, by_all);
+  // A part that is 0, and that no parameter of the last fit changes, was not measured either.
+  const bool known = machine.fitted && machine.fitted->open_known;
+  const StraightParts seen = known ? std_of_parts(machine, axes, at, true) : StraightParts::Ones();
+  constexpr double kZero = 1e-9;  // rad, and part of a length: below the digits of all files
   const std::array<const char*, 6> names = {"XY", "XZ", "YZ", "X", "Y", "Z"};
   const std::array<std::size_t, 6> along = {1, 2, 2, 0, 1, 2};  // the axis over which the part adds up
   for (std::size_t k = 0; k < names.size(); ++k) {
     const auto i = static_cast<Index>(k);
-    if (!(k < 3 ? features.skew : features.steps) || open[i] <= kMostShare * std::abs(parts[i])) continue;
+    if (!(k < 3 ? features.skew : features.steps)) continue;
+    const bool absent = std::abs(parts[i]) < kZero && seen[i] < kZero;
+    if (std[i] <= kMostShare * std::abs(parts[i]) && !absent) continue;
     const double travel = axes.high[along[k]] - axes.low[along[k]];
     correction.unmeasured.push_back(
-        {names[k], parts[i], open[i], 1000 * travel * std::max(std::abs(parts[i]), open[i])});
+        {names[k], parts[i], std[i], absent ? 0 : 1000 * travel * std::max(std::abs(parts[i]), std[i])});
     parts[i] = 0;
   }
   correction.no_skew = std::count_if(correction.unmeasured.begin(), correction.unmeasured.end(),
@@ -175,6 +202,11 @@ double between_um(const model::Machine& machine, const ThreeAxes& axes, const He
   VectorXd error = needed_heights(machine, axes, points, at, bed);
   for (Index i = 0; i < points.cols(); ++i) error[i] -= mesh.at(points(0, i), points(1, i));
   return 1000 * (error.maxCoeff() - error.minCoeff()) / 2;
+}
+
+double rms_beside_mean_um(const std::vector<double>& mm) {
+  const Eigen::Map<const VectorXd> all(mm.data(), static_cast<Index>(mm.size()));
+  return 1000 * std::sqrt((all.array() - all.mean()).square().mean());
 }
 
 /// Removes the offset and the turn about Z that fit best.
@@ -246,9 +278,31 @@ std::optional<Bed> bed_of(const model::Machine& machine, const ThreeAxes& axes, 
   return bed;
 }
 
+Bed bed_of_touches(const model::Machine& machine, const ThreeAxes& axes, const model::Measurement& rows,
+                   const std::string& name) {
+  std::vector<std::string> names;
+  for (const model::Thing& thing : rows.things)
+    if (thing.artefact.type == model::ArtefactType::kPlane && !thing.in_measuring_frame() &&
+        (name.empty() || name == thing.label) &&
+        std::find(names.begin(), names.end(), thing.label) == names.end())
+      names.push_back(thing.label);
+  if (names.size() != 1)
+    throw text::InputError(
+        {machine.file, 0}, name.empty() ? "planes" : name,
+        names.empty() ? "no row of --touches touches a plane of unknown position with this name"
+                      : fmt::format("--touches has several planes ({}): state the name of the bed with --bed",
+                                    text::joined(names, ", ")));
+  return {names.front(),
+          Eigen::Vector3d::Zero(),
+          Eigen::Vector3d::UnitZ(),
+          {axes.low[0], axes.low[1]},
+          {axes.high[0], axes.high[1]}};
+}
+
 void give_shape(Bed& bed, const model::Machine& machine, const ThreeAxes& axes,
                 const model::Measurement& rows) {
-  bed.shape.emplace(bed_touches(machine, rows, bed.name));
+  bed.touches = bed_touches(machine, rows, bed.name);
+  bed.shape.emplace(bed.touches);
   for (std::size_t i = 0; i < 2; ++i) {
     bed.low[i] = std::max(axes.low[i], bed.shape->low[i]);
     bed.high[i] = std::min(axes.high[i], bed.shape->high[i]);
@@ -282,11 +336,60 @@ Matrix3Xd PrinterCorrection::corrected(const Matrix3Xd& commands) const {
   return result;
 }
 
+bool PrinterCorrection::measured(const std::string& skew) const {
+  return std::none_of(unmeasured.begin(), unmeasured.end(),
+                      [&](const UnmeasuredPart& one) { return one.name == skew; });
+}
+
+bool PrinterCorrection::empty() const {
+  return !has_mesh() && xy == 0 && xz == 0 && yz == 0 && steps == std::array<double, 3>{1, 1, 1};
+}
+
+bool heights_are_measured(const model::Machine& machine, const ThreeAxes& axes, const model::States& at) {
+  const VectorXd heights = heights_of(machine, axes, at);
+  if (!(1000 * heights.cwiseAbs().maxCoeff() > kNothing_um)) return false;
+  if (!machine.fitted || !machine.fitted->open_known) return true;
+  const VectorXd variance = variance_of(machine, machine.fitted->open, [&](const model::Machine& moved) {
+    return heights_of(moved, axes, at);
+  });
+  return std::sqrt(variance.sum()) <= kMostShare * heights.norm();
+}
+
+std::optional<TouchResidual> touch_residual(const model::Machine& machine, const ThreeAxes& axes,
+                                            const PrinterCorrection& correction, const model::States& at,
+                                            const Bed& bed) {
+  if (!correction.has_mesh()) return std::nullopt;
+  const HeightMesh& mesh = correction.mesh;
+  const Eigen::Vector3d middle((mesh.x_low + mesh.x_high) / 2, (mesh.y_low + mesh.y_high) / 2, axes.low[2]);
+  const Matrix3Xd ends = nominal_points(
+      machine, axes,
+      Matrix3Xd{{middle.x(), middle.x()}, {middle.y(), middle.y()}, {middle.z(), middle.z() + 1}}, at);
+  const double rise = ends(2, 1) - ends(2, 0);  // -1: a bed that moves along Z itself
+  constexpr std::size_t kFew = 3;
+  for (const bool of_nozzle : {true, false}) {
+    std::vector<double> before, after;
+    for (const BedTouch& touch : bed.touches) {
+      const double x = touch.nominal.x(), y = touch.nominal.y();
+      constexpr double kEdge_mm = 1e-3;
+      const bool inside = x > mesh.x_low - kEdge_mm && x < mesh.x_high + kEdge_mm &&
+                          y > mesh.y_low - kEdge_mm && y < mesh.y_high + kEdge_mm;
+      if (!inside || touch.of_nozzle() != of_nozzle) continue;
+      before.push_back(touch.nominal.z());
+      after.push_back(touch.nominal.z() - rise * mesh.at(x, y));
+    }
+    if (before.size() < kFew) continue;
+    return TouchResidual{before.size(), of_nozzle, rms_beside_mean_um(before), rms_beside_mean_um(after)};
+  }
+  return std::nullopt;
+}
+
 PrinterCorrection printer_correction(const model::Machine& machine, const ThreeAxes& axes,
                                      const PrinterFeatures& features, const model::States& at,
-                                     double tolerance_um, const std::optional<Bed>& bed) {
+                                     double tolerance_um, const std::optional<Bed>& bed,
+                                     const model::Machine* straight) {
   PrinterCorrection correction;
-  fit_straight_parts(correction, features, machine, axes, at);
+  fit_straight_parts(correction, features, straight != nullptr ? *straight : machine, axes, at,
+                     straight != nullptr);
   if (!features.mesh) return correction;
   const ThreeAxes over = over_bed(axes, bed);
   for (const std::size_t count : features.points) {
@@ -369,6 +472,10 @@ std::vector<LeftOut> errors_of_inputs(const model::Machine& machine, const Three
   std::vector<LeftOut> left;
   for (std::size_t k = 0; k < machine.inputs.size(); ++k) {
     const model::Input& input = machine.inputs[k];
+    // The position of a probe is no state of the machine.
+    if (std::find(format::columns::kProbe.begin(), format::columns::kProbe.end(), input.name) !=
+        format::columns::kProbe.end())
+      continue;
     for (const double value : range_of(machine, input)) {
       model::States changed = at;
       changed.input[k].setConstant(value);

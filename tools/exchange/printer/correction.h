@@ -24,7 +24,8 @@ struct HeightMesh {
   double at(double x, double y) const;
 };
 
-/// A skew or a step factor that the last fit did not measure: the correction has none.
+/// A skew or a step factor that the last fit did not measure: the correction has none. `um` is 0 if the
+/// machine file has no value for it and the last fit no parameter.
 struct UnmeasuredPart {
   std::string name;           // "XY", "XZ", "YZ" for a skew, "X", "Y", "Z" for steps
   double value = 0, std = 0;  // of the model, and its standard uncertainty because no reading determines it
@@ -45,6 +46,12 @@ struct PrinterCorrection {
   /// True if the last fit measured none of the three skews: the files then contain no skew.
   bool no_skew = false;
 
+  /// True if the last fit measured this skew ("XY", "XZ", "YZ").
+  bool measured(const std::string& skew) const;
+  /// True if the files contain heights.
+  bool has_mesh() const { return mesh.z.size() > 0; }
+  /// True if the correction changes nothing.
+  bool empty() const;
   /// Returns the corrected commands of X, Y and Z, one column for each command, mm.
   Eigen::Matrix3Xd corrected(const Eigen::Matrix3Xd& commands) const;
 };
@@ -65,6 +72,7 @@ struct Bed {
 
   /// Shape of the bed from its touches; no value: the bed is the plane
   std::optional<BedShape> shape{};
+  std::vector<BedTouch> touches{};  // the touches of the shape
 
   /// Returns the height of the bed at x and y of workpiece coordinates, mm.
   double height(double x, double y) const;
@@ -74,6 +82,12 @@ struct Bed {
 /// touched plane is returned; nullopt if the record contains no plane. Throws InputError if no plane has this
 /// name, if there are several planes and no name, or if the plane is nearly vertical.
 std::optional<Bed> bed_of(const model::Machine& machine, const ThreeAxes& axes, const std::string& name);
+
+/// Returns a horizontal bed with the name `name` for touches that the last fit did not have. If the name is
+/// empty, the only plane of unknown position that `rows` touch is the bed. Throws InputError if there is no
+/// such plane, or if there are several.
+Bed bed_of_touches(const model::Machine& machine, const ThreeAxes& axes, const model::Measurement& rows,
+                   const std::string& name);
 
 /// Gives the bed the shape of its touches `rows`. The mesh then covers the region of the touched points.
 /// Throws InputError if the fit rows have fewer than three touches of this bed.
@@ -87,10 +101,34 @@ void give_shape(Bed& bed, const model::Machine& machine, const ThreeAxes& axes,
 /// them. A skew or a factor whose standard uncertainty exceeds half of its value, because no reading
 /// determines its parameters (`open` of the fit record), is not corrected: it is in `unmeasured`. A rotation
 /// about Z is not corrected, because it rotates the whole part. If a bed is given, the
-/// heights follow its slope, and the mesh covers the region in which the bed was touched.
+/// heights follow its slope, and the mesh covers the region in which the bed was touched. `straight`: the
+/// machine of the skews and steps, if it is not the machine of the heights. Its skews and steps then must
+/// meet the same limit with their whole standard uncertainty.
 PrinterCorrection printer_correction(const model::Machine& machine, const ThreeAxes& axes,
                                      const PrinterFeatures& features, const model::States& at,
-                                     double tolerance_um, const std::optional<Bed>& bed = {});
+                                     double tolerance_um, const std::optional<Bed>& bed = {},
+                                     const model::Machine* straight = nullptr);
+
+/// True if the last fit measured the heights of the axes: the part of their standard uncertainty that no
+/// reading determines is at most half of the heights at the lowest Z, without a constant offset. False if the
+/// machine has no error along Z there. True for a machine file without this part (`open`).
+bool heights_are_measured(const model::Machine& machine, const ThreeAxes& axes, const model::States& at);
+
+/// Heights of the touches without the files, and with them: rms without a constant offset, um. The touches
+/// are those of the nozzle, if there are three or more, otherwise those of the probe.
+struct TouchResidual {
+  std::size_t touches = 0;
+  bool of_nozzle = false;
+  double before_um = 0, after_um = 0;
+
+  bool worse() const { return after_um > before_um; }
+};
+
+/// Computes the heights at the touches of the bed in the region of the mesh, as the firmware sees them (with
+/// straight axes). No value without a mesh, or with fewer than three touches.
+std::optional<TouchResidual> touch_residual(const model::Machine& machine, const ThreeAxes& axes,
+                                            const PrinterCorrection& correction, const model::States& at,
+                                            const Bed& bed);
 
 /// Errors of the tool point at positions in the whole volume, um. An offset and a rotation about Z are fitted
 /// and removed. If a bed is given, the errors are those in the region of the bed, with heights relative to

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "tools/maths/rounding.h"
 
@@ -43,75 +45,103 @@ std::string steps_lines(const PresentSetting& present, PrinterCorrection& correc
   constexpr double kDigit = 1e-6;
   if (!present.steps) return text;
   for (std::size_t i = 0; i < 3; ++i) {
+    if (!correction.measured(kLetters[i])) continue;
     const double now = (*present.steps)[i];
     const double factor = correction.steps[i];
     const double next = rounded(per_turn ? now / factor : now * factor, kDigit);
     correction.steps[i] = per_turn ? now / next : next / now;
     text += line(i, next);
   }
-  return comment + text;
+  return text.empty() ? "" : comment + text;
 }
 
-std::vector<ConfigurationFile> klipper(const PresentSetting& present, const std::string& name,
-                                       PrinterCorrection& correction) {
-  round_to(correction, 1e-9, 1e-6);
-  const HeightMesh& mesh = correction.mesh;
-  const Skew skew = skew_of(correction, 1e-9);
-  const std::string& profile = present.profile;
-  std::string text =
-      correction.no_skew
-          ? fmt::format(
-                "# {0}: bed heights. Write [include {1}.cfg] into printer.cfg, beside the section "
-                "[bed_mesh],\n"
-                "# which must be present. Load the heights at the end of the start code:\n"
-                "# BED_MESH_PROFILE LOAD={1}. The squareness was not measured: a skew profile of the printer "
-                "stays.\n",
-                name, profile)
-          : fmt::format(
-                "# {0}: squareness and bed heights. Write [include {1}.cfg] into printer.cfg, beside the "
-                "sections\n"
-                "# [skew_correction] and [bed_mesh], which must be present. Load both at the end of the "
-                "start code:\n"
-                "# SKEW_PROFILE LOAD={1} and BED_MESH_PROFILE LOAD={1}.\n",
-                name, profile);
-  if (!correction.no_skew)
-    text += fmt::format("[skew_correction {}]\nxy_skew = {:.9f}\nxz_skew = {:.9f}\nyz_skew = {:.9f}\n",
-                        profile, skew.xy, skew.xz, skew.yz);
-  text += fmt::format("\n[bed_mesh {}]\nversion = 1\npoints =\n", profile);
+/// "xz_skew and yz_skew": the skews that the last fit did not measure; `word` makes the name.
+template <class Word>
+std::string unmeasured_skews(const PrinterCorrection& correction, const Word& word) {
+  std::string text;
+  for (const char* const one : {"XY", "XZ", "YZ"})
+    if (!correction.measured(one)) text += (text.empty() ? "" : " and ") + word(one);
+  return text;
+}
+
+/// Comment at the head of the file of Klipper: what it contains, and how to load it.
+std::string klipper_head(const std::string& name, const std::string& profile,
+                         const PrinterCorrection& correction) {
+  const bool skew = !correction.no_skew, mesh = correction.has_mesh();
+  if (!skew && !mesh) return fmt::format("# {}: neither squareness nor bed heights were measured.\n", name);
+  if (skew && mesh)
+    return fmt::format(
+        "# {0}: squareness and bed heights. Write [include {1}.cfg] into printer.cfg, beside the "
+        "sections\n"
+        "# [skew_correction] and [bed_mesh], which must be present. Load both at the end of the "
+        "start code:\n"
+        "# SKEW_PROFILE LOAD={1} and BED_MESH_PROFILE LOAD={1}.\n",
+        name, profile);
+  if (mesh)
+    return fmt::format(
+        "# {0}: bed heights. Write [include {1}.cfg] into printer.cfg, beside the section "
+        "[bed_mesh],\n"
+        "# which must be present. Load the heights at the end of the start code:\n"
+        "# BED_MESH_PROFILE LOAD={1}. The squareness was not measured: a skew profile of the printer "
+        "stays.\n",
+        name, profile);
+  return fmt::format(
+      "# {0}: squareness. Write [include {1}.cfg] into printer.cfg, beside the section "
+      "[skew_correction],\n"
+      "# which must be present. Load the squareness at the end of the start code:\n"
+      "# SKEW_PROFILE LOAD={1}. The heights of the bed were not measured: a bed mesh of the printer "
+      "stays.\n",
+      name, profile);
+}
+
+std::string klipper_mesh(const HeightMesh& mesh, const std::string& profile) {
+  std::string text = fmt::format("\n[bed_mesh {}]\nversion = 1\npoints =\n", profile);
   for (Index row = 0; row < mesh.z.rows(); ++row) {
     text += "\t";
     for (Index column = 0; column < mesh.z.cols(); ++column)
       text += fmt::format("{}{:.6f}", column == 0 ? "" : ", ", mesh.z(row, column));
     text += "\n";
   }
-  text += fmt::format(
-      "tension = 0.2\nmin_x = {:.3f}\nalgo = direct\ny_count = {}\nmesh_y_pps = 0\nmin_y = {:.3f}\nx_count = "
-      "{}\n"
-      "max_y = {:.3f}\nmesh_x_pps = 0\nmax_x = {:.3f}\n",
-      mesh.x_low, mesh.z.rows(), mesh.y_low, mesh.z.cols(), mesh.y_high, mesh.x_high);
+  return text +
+         fmt::format(
+             "tension = 0.2\nmin_x = {:.3f}\nalgo = direct\ny_count = {}\nmesh_y_pps = 0\nmin_y = {:.3f}\n"
+             "x_count = {}\nmax_y = {:.3f}\nmesh_x_pps = 0\nmax_x = {:.3f}\n",
+             mesh.x_low, mesh.z.rows(), mesh.y_low, mesh.z.cols(), mesh.y_high, mesh.x_high);
+}
+
+std::vector<ConfigurationFile> klipper(const PresentSetting& present, const std::string& name,
+                                       PrinterCorrection& correction) {
+  round_to(correction, 1e-9, 1e-6);
+  const Skew skew = skew_of(correction, 1e-9);
+  const std::string& profile = present.profile;
+  std::string text = klipper_head(name, profile, correction);
+  if (!correction.no_skew) {
+    const std::string open = unmeasured_skews(correction, [](std::string one) {
+      for (char& c : one) c = static_cast<char>(c - 'A' + 'a');
+      return one + "_skew";
+    });
+    if (!open.empty())
+      text += fmt::format(
+          "# Not measured: {}. Klipper needs three numbers: replace each 0 by the present value of the "
+          "printer.\n",
+          open);
+    text += fmt::format("[skew_correction {}]\nxy_skew = {:.9f}\nxz_skew = {:.9f}\nyz_skew = {:.9f}\n",
+                        profile, skew.xy, skew.xz, skew.yz);
+  }
+  if (correction.has_mesh()) text += klipper_mesh(correction.mesh, profile);
   std::string steps =
       steps_lines(present, correction, "# rotation_distance of the steppers, in mm per turn\n", true,
                   [](std::size_t i, double next) {
                     return fmt::format("[stepper_{}]\nrotation_distance: {:.6f}\n",
                                        static_cast<char>('x' + static_cast<int>(i)), next);
                   });
-  std::vector<ConfigurationFile> files = {{profile + ".cfg", text}};
+  std::vector<ConfigurationFile> files;
+  if (correction.has_mesh() || !correction.no_skew) files.push_back({profile + ".cfg", text});
   if (!steps.empty()) files.push_back({profile + "_steppers.cfg", steps});
   return files;
 }
 
-std::vector<ConfigurationFile> reprap(const PresentSetting& present, const std::string& name,
-                                      PrinterCorrection& correction) {
-  round_to(correction, 1e-8, 1e-3);
-  const HeightMesh& mesh = correction.mesh;
-  std::string code = fmt::format(
-      "; {}: run in config.g; the heights after homing (G29 S1 P\"vernier_heightmap.csv\")\n", name);
-  if (!correction.no_skew)
-    code += fmt::format("M556 S1000 X{:.5f} Y{:.5f} Z{:.5f} ; squareness: mm in 1000 mm of XY, YZ, XZ\n",
-                        1000 * correction.xy, 1000 * correction.yz, 1000 * correction.xz);
-  code += steps_lines(present, correction, "", false, [](std::size_t i, double next) {
-    return fmt::format("M92 {}{:.6f}\n", kLetters[i], next);
-  });
+std::string reprap_map(const HeightMesh& mesh) {
   const double count = static_cast<double>(mesh.z.size());
   const double mean = mesh.z.sum() / count;
   const double spread = std::sqrt((mesh.z.array() - mean).square().sum() / count);
@@ -126,7 +156,50 @@ std::vector<ConfigurationFile> reprap(const PresentSetting& present, const std::
   for (Index row = 0; row < mesh.z.rows(); ++row)
     for (Index column = 0; column < mesh.z.cols(); ++column)
       map += fmt::format("{:7.3f}{}", mesh.z(row, column), column + 1 < mesh.z.cols() ? "," : "\n");
-  return {{"vernier.g", code}, {"vernier_heightmap.csv", map}};
+  return map;
+}
+
+/// The letters of a command that sets the three skews, without those that were not measured: the firmware
+/// keeps its present value of a letter that is absent.
+std::string skew_words(const PrinterCorrection& correction,
+                       const std::array<std::pair<const char*, std::string>, 3>& words) {
+  std::string text;
+  for (const auto& [name, word] : words)
+    if (correction.measured(name)) text += " " + word;
+  return text;
+}
+
+std::vector<ConfigurationFile> reprap(const PresentSetting& present, const std::string& name,
+                                      PrinterCorrection& correction) {
+  round_to(correction, 1e-8, 1e-3);
+  std::string code = fmt::format(
+      "; {}: run in config.g{}\n", name,
+      correction.has_mesh() ? "; the heights after homing (G29 S1 P\"vernier_heightmap.csv\")" : "");
+  if (!correction.no_skew)
+    code += fmt::format("M556 S1000{} ; squareness: mm in 1000 mm of XY (X), YZ (Y), XZ (Z)\n",
+                        skew_words(correction, {{{"XY", fmt::format("X{:.5f}", 1000 * correction.xy)},
+                                                 {"YZ", fmt::format("Y{:.5f}", 1000 * correction.yz)},
+                                                 {"XZ", fmt::format("Z{:.5f}", 1000 * correction.xz)}}}));
+  code += steps_lines(present, correction, "", false, [](std::size_t i, double next) {
+    return fmt::format("M92 {}{:.6f}\n", kLetters[i], next);
+  });
+  std::vector<ConfigurationFile> files = {{"vernier.g", code}};
+  if (correction.has_mesh()) files.push_back({"vernier_heightmap.csv", reprap_map(correction.mesh)});
+  return files;
+}
+
+std::string marlin_head(const std::string& name, const PrinterCorrection& correction) {
+  const char* const skew = correction.no_skew ? "" : "SKEW_CORRECTION_GCODE, SKEW_CORRECTION_FOR_Z";
+  const HeightMesh& mesh = correction.mesh;
+  if (!correction.has_mesh())
+    return fmt::format("; {}: send once, then M500 stores it.{}{}\n", name,
+                       correction.no_skew ? "" : " Marlin needs ", skew);
+  return fmt::format(
+      "; {}: send once, then M500 stores it. Marlin needs {}{}\n"
+      "; a mesh of {} x {} points from ({:.3f}, {:.3f}) to ({:.3f}, {:.3f}) mm\n"
+      "; (GRID_MAX_POINTS_X, MESH_MIN_X, MESH_MAX_X ... in its configuration).\n",
+      name, skew, correction.no_skew ? "" : " and", mesh.z.cols(), mesh.z.rows(), mesh.x_low, mesh.y_low,
+      mesh.x_high, mesh.y_high);
 }
 
 std::vector<ConfigurationFile> marlin(const PresentSetting& present, const std::string& name,
@@ -134,18 +207,16 @@ std::vector<ConfigurationFile> marlin(const PresentSetting& present, const std::
   round_to(correction, 1e-8, 1e-4);
   const HeightMesh& mesh = correction.mesh;
   const Skew skew = skew_of(correction, 1e-8);
-  std::string code = fmt::format(
-      "; {}: send once, then M500 stores it. Marlin needs {}\n"
-      "; a mesh of {} x {} points from ({:.3f}, {:.3f}) to ({:.3f}, {:.3f}) mm\n"
-      "; (GRID_MAX_POINTS_X, MESH_MIN_X, MESH_MAX_X ... in its configuration).\n",
-      name, correction.no_skew ? "" : "SKEW_CORRECTION_GCODE, SKEW_CORRECTION_FOR_Z and", mesh.z.cols(),
-      mesh.z.rows(), mesh.x_low, mesh.y_low, mesh.x_high, mesh.y_high);
+  std::string code = marlin_head(name, correction);
   if (!correction.no_skew)
-    code += fmt::format("M852 I{:.8f} J{:.8f} K{:.8f} ; squareness XY, XZ, YZ\n", skew.xy, skew.xz, skew.yz);
+    code += fmt::format("M852{} ; squareness XY (I), XZ (J), YZ (K)\n",
+                        skew_words(correction, {{{"XY", fmt::format("I{:.8f}", skew.xy)},
+                                                 {"XZ", fmt::format("J{:.8f}", skew.xz)},
+                                                 {"YZ", fmt::format("K{:.8f}", skew.yz)}}}));
   for (Index row = 0; row < mesh.z.rows(); ++row)
     for (Index column = 0; column < mesh.z.cols(); ++column)
       code += fmt::format("M421 I{} J{} Z{:.4f}\n", column, row, mesh.z(row, column));
-  code += "M420 S1 Z0 ; heights on, at every height of Z\n";
+  if (correction.has_mesh()) code += "M420 S1 Z0 ; heights on, at every height of Z\n";
   code += steps_lines(present, correction, "", false, [](std::size_t i, double next) {
     return fmt::format("M92 {}{:.6f}\n", kLetters[i], next);
   });
