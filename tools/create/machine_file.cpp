@@ -262,11 +262,13 @@ std::string axes_text(const MachinePlan& plan) {
       "         maxslew its change in one second. Set both limits to values that your machine allows. -->\n"
       "    <machineaxes>\n";
   for (const PlannedAxis& axis : plan.axes)
-    text += fmt::format("      <{} rotary=\"{}\"{} min=\"{}\" max=\"{}\" {}/>\n", axis.name, axis.rotary(),
-                        axis.rollover ? " rollover=\"true\"" : "", number(axis.min), number(axis.max),
-                        !axis.rotary()     ? kLinearLimits
-                        : plan.arm.empty() ? kRotaryLimits
-                                           : kJointLimits);
+    text += fmt::format(
+        "      <{} rotary=\"{}\"{}{} min=\"{}\" max=\"{}\" {}/>\n", axis.name, axis.rotary(),
+        axis.joint.empty() ? "" : fmt::format(" joint=\"{}\"", text::escape_attribute(axis.joint)),
+        axis.rollover ? " rollover=\"true\"" : "", number(axis.min), number(axis.max),
+        !axis.rotary()     ? kLinearLimits
+        : plan.arm.empty() ? kRotaryLimits
+                           : kJointLimits);
   return text + "    </machineaxes>\n";
 }
 

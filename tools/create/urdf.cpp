@@ -309,6 +309,7 @@ PlannedAxis axis_of(const Joint& joint, const std::string& file) {
   const double unit = joint.slides() ? kMmPerM : kDegPerRad;
   PlannedAxis axis{axis_name(joint.name),      -180, 180, joint.slides() ? 'Z' : 'C',
                    joint.type == "continuous", {}};
+  if (axis.name != joint.name) axis.joint = joint.name;
   if (axis.rollover) return axis;
   if (!joint.lower || !joint.upper || !(*joint.lower < *joint.upper))
     throw text::InputError({file, joint.line}, joint.name,

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <pugixml.hpp>
 #include <random>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "tools/model/chain/evaluate.h"
 #include "tools/model/fit_record.h"
 #include "tools/text/error.h"
+#include "tools/text/words.h"
 
 namespace vernier::exchange {
 namespace {
@@ -47,7 +49,10 @@ Isometry3d motion_of(const Joint& joint, bool rotary, double by) {
 
 class Arm {
  public:
-  Arm(const model::Machine& machine, const model::States& at) : machine_(machine), at_(at) {
+  Arm(const model::Machine& machine, const model::States& at, const std::vector<std::string>& names)
+      : machine_(machine), at_(at), names_(names) {
+    if (names_.empty())
+      for (const model::Axis& axis : machine.axes) names_.push_back(axis.name);
     for (const model::Axis& axis : machine.axes) {
       const bool has_zero = (!axis.min || *axis.min <= 0) && (!axis.max || *axis.max >= 0);
       reference_.push_back(has_zero ? 0 : (axis.min.value_or(*axis.max) + axis.max.value_or(*axis.min)) / 2);
@@ -62,6 +67,8 @@ class Arm {
   UrdfFile file() const {
     UrdfFile file;
     file.undetermined = undetermined();
+    for (UndeterminedJoint& one : file.undetermined)
+      if (const auto axis = machine_.find_axis(one.joint)) one.joint = names_[*axis];
     file.text = text(file.undetermined);
     measure(file);
     return file;
@@ -275,22 +282,54 @@ class Arm {
     }
   }
 
+  /// Rms difference of the nominal arm from the machine. The base and the tool point of the nominal arm are
+  /// fitted, because a user states both for his set-up: an unknown tool is no error of the arm. Steps of
+  /// least squares from the nominal base and tool, linear in the tool point and in the rotation of the base.
+  static double rms_aligned_mm(const model::Poses& nominal, const std::vector<Isometry3d>& real) {
+    constexpr int kSteps = 5;  // the rotation of the base is small: two are enough
+    const auto n = static_cast<Index>(real.size());
+    Vector3d tool = Vector3d::Zero();
+    Isometry3d base = Isometry3d::Identity();
+    Eigen::VectorXd rest(3 * n);
+    Eigen::MatrixXd slope(3 * n, 9);
+    for (int step = 0; step <= kSteps; ++step) {
+      for (Index i = 0; i < n; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        const Vector3d point = base * Vector3d(nominal.position.col(i) + nominal.rotation[at] * tool);
+        rest.segment<3>(3 * i) = real[at].translation() - point;
+        slope.block<3, 3>(3 * i, 0).setIdentity();
+        for (Index k = 0; k < 3; ++k)
+          slope.block<3, 1>(3 * i, 3 + k) = Vector3d::Unit(k).cross(point) / kLever_mm;
+        slope.block<3, 3>(3 * i, 6) = base.linear() * nominal.rotation[at];
+      }
+      if (step == kSteps) break;
+      const Eigen::VectorXd change = maths::least_norm(slope, rest);
+      const Vector3d turn = change.segment<3>(3) / kLever_mm;
+      Isometry3d moved = Isometry3d::Identity();
+      if (turn.norm() > 0)
+        moved.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+      moved.translation() = change.head<3>();
+      base = moved * base;
+      tool += change.tail<3>();
+    }
+    return std::sqrt(rest.squaredNorm() / static_cast<double>(n));
+  }
+
   void measure(UrdfFile& file) const {
     const std::vector<Joints> all = random_poses(kSeed);
     const std::vector<Isometry3d> real = poses(all);
     const model::Poses nominal = model::forward(model::nominal_machine(machine_), states(all));
-    double sum = 0, sum_nominal = 0;
+    double sum = 0;
     for (std::size_t i = 0; i < kPoses; ++i) {
       const Isometry3d held = ideal(all[i]);
       const double off_mm = (held.translation() - real[i].translation()).norm();
       sum += off_mm * off_mm;
-      sum_nominal += (nominal.position.col(static_cast<Index>(i)) - real[i].translation()).squaredNorm();
       file.worst_um = std::max(file.worst_um, maths::kUmPerMm * off_mm);
       const Vector3d tilt = held.rotation().col(2).cross(real[i].rotation().col(2));
       file.worst_urad = std::max(file.worst_urad, 1e6 * tilt.norm());
     }
     file.rms_um = maths::kUmPerMm * std::sqrt(sum / kPoses);
-    file.rms_nominal_um = maths::kUmPerMm * std::sqrt(sum_nominal / kPoses);
+    file.rms_nominal_um = maths::kUmPerMm * rms_aligned_mm(nominal, real);
     file.positions = kPoses;
     file.measured = machine_.fitted && !machine_.fitted->measured.empty();
   }
@@ -343,7 +382,8 @@ class Arm {
     Vector3d at = Vector3d::Zero();
     for (const Joint& joint : joints_) {
       const model::Axis& axis = machine_.axes[joint.axis];
-      const std::string child = "link_" + axis.name;
+      const std::string& name = names_[joint.axis];
+      const std::string child = "link_" + name;
       const bool endless = axis.rotary && (!axis.min || !axis.max);
       // The variable is 0 at its own zero, the frame parallel to the base at the reference pose.
       Isometry3d frame = Isometry3d::Identity();
@@ -356,7 +396,7 @@ class Arm {
       text += fmt::format(
           "  <link name=\"{}\"/>\n  <joint name=\"{}\" type=\"{}\">\n{}    <parent link=\"{}\"/>\n    <child "
           "link=\"{}\"/>\n    <axis xyz=\"{}\"/>\n{}  </joint>\n",
-          child, axis.name,
+          child, name,
           !axis.rotary ? "prismatic"
           : endless    ? "continuous"
                        : "revolute",
@@ -374,6 +414,7 @@ class Arm {
 
   const model::Machine& machine_;
   const model::States& at_;
+  std::vector<std::string> names_;  // of the joints, an entry for each axis
   Joints reference_;
   std::vector<Joint> joints_;
   Isometry3d at_reference_;
@@ -381,6 +422,20 @@ class Arm {
 
 }  // namespace
 
-UrdfFile urdf_arm(const model::Machine& machine, const model::States& at) { return Arm(machine, at).file(); }
+UrdfFile urdf_arm(const model::Machine& machine, const model::States& at,
+                  const std::vector<std::string>& joints) {
+  return Arm(machine, at, joints).file();
+}
+
+std::vector<std::string> joint_names(const model::Machine& machine, const std::string& text) {
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size());
+  const pugi::xml_node axes = document.find_node(
+      [](const pugi::xml_node& node) { return text::equal_no_case(node.name(), "machineaxes"); });
+  std::vector<std::string> names;
+  for (const model::Axis& axis : machine.axes)
+    names.emplace_back(axes.child(axis.name.c_str()).attribute("joint").as_string(axis.name.c_str()));
+  return names;
+}
 
 }  // namespace vernier::exchange

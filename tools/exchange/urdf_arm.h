@@ -16,9 +16,10 @@ struct UrdfFile {
   std::string text;
   double worst_um = 0, worst_urad = 0;  // largest difference of the tool point, and of the tool direction
   double rms_um = 0;                    // rms difference of the tool point: what URDF leaves out
-  double rms_nominal_um = 0;            // rms difference of the nominal machine from the machine
-  std::size_t positions = 0;            // number of positions at which the differences were computed
-  bool measured = false;                // true if these positions are in the measured ranges of the fit
+  /// Rms difference of the nominal arm from the machine, with the base and the tool point of the best fit
+  double rms_nominal_um = 0;
+  std::size_t positions = 0;  // number of positions at which the differences were computed
+  bool measured = false;      // true if these positions are in the measured ranges of the fit
   std::vector<UndeterminedJoint> undetermined;  // joints that the readings of the fit do not determine
 };
 
@@ -29,9 +30,14 @@ struct UrdfFile {
 /// the tool (with a lever of 100 mm), at 1000 poses in the measured ranges of the axes (without a fit: in the
 /// ranges of the axes). The start of the fit are the origins and axes about which (or along which) the chain
 /// moves, one joint after another. Errors that depend on joints, inputs or direction then remain only in
-/// part. The differences of the result are those at 1000 other poses in the same ranges (fixed seeds). `at`
-/// (one state): values of inputs and motion. Throws InputError if an axis moves the workpiece, or if an axis
-/// moves no transform.
-UrdfFile urdf_arm(const model::Machine& machine, const model::States& at);
+/// part. `joints`: name of the joint of each axis; empty: the names of the axes. The differences of the
+/// result are those at 1000 other poses in the same ranges (fixed seeds). `at` (one state): values of inputs
+/// and motion. Throws InputError if an axis moves the workpiece, or if an axis moves no transform.
+UrdfFile urdf_arm(const model::Machine& machine, const model::States& at,
+                  const std::vector<std::string>& joints = {});
+
+/// Returns the names of the joints in the URDF from which a machine file was made (attribute `joint` of an
+/// axis): one name for each axis, that of the axis if it has no such attribute. `text`: the machine file.
+std::vector<std::string> joint_names(const model::Machine& machine, const std::string& text);
 
 }  // namespace vernier::exchange

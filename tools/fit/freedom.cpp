@@ -17,10 +17,15 @@ void set_freedom(model::Machine& machine, const std::string& pattern, bool free)
     one.set_free(free);
     found = true;
   }
-  if (!found)
-    throw text::InputError(fmt::format(
-        "\"{}\": no static, table column (table.X.rY), BaseShift, ToolShift or scalefactor.X has this name",
-        pattern));
+  if (found) return;
+  const bool tool = pattern.starts_with("ToolShift") && machine.tool_shifts.empty();
+  const bool point = machine.find_static("TPX").has_value();
+  throw text::InputError(fmt::format(
+      "\"{}\": no static, table column (table.X.rY), BaseShift, ToolShift or scalefactor.X has this name{}",
+      pattern,
+      !tool   ? ""
+      : point ? "; the machine file has no <ToolShift>, and its tool point is TPX,TPY,TPZ"
+              : "; the machine file has no <ToolShift/> in <static>"));
 }
 
 }  // namespace

@@ -543,8 +543,8 @@ class Reader {
     read_correct(list);
     for (const pugi::xml_node node : children(list)) {
       no_children(node);
-      check_attributes(node, {"rotary", "min", "max", "maxcorrection", "maxslew", "rollover", "scalefactor",
-                              "Hide", "unit", "reference", "note"});
+      check_attributes(node, {"rotary", "joint", "min", "max", "maxcorrection", "maxslew", "rollover",
+                              "scalefactor", "Hide", "unit", "reference", "note"});
       Axis axis;
       axis.name = new_name(node);
       axis.line = line(node);

@@ -197,5 +197,32 @@ TEST_F(ProbedBed, ASquarenessThatNoReadingDeterminesHasNoSizeInTheExport) {
   EXPECT_THAT(said, Not(HasSubstr("+- 0.0")));
 }
 
+/// The distances of a printed square do not show the bow of the bed.
+TEST_F(ProbedBed, APrintedSquareBesideTheMeshMakesNoBowOfTheAxes) {
+  text::write_file(folder + "/bed.csv", survey(0));
+  text::write_file(folder + "/square.csv",
+                   "X[mm],Y[mm],Z[mm],distance[mm],from,u[mm]\n30,30,0.2,,,0.02\n200,30,0.2,170,1,0.02\n"
+                   "200,200,0.2,240.92,1,0.02\n30,200,0.2,170,1,0.02\n30,200,0.2,239.92,2,0.02\n");
+  for (const std::string errors : {"all", "square"}) {
+    ASSERT_EQ(run("vernier new gantry --axis X:0:220 --axis Y:0:220 --axis Z:0:250 --artefact bed:plane "
+                  "--errors " +
+                  errors +
+                  " -o p.xml && vernier fit p.xml bed.csv square.csv -o fit.xml && "
+                  "vernier export klipper fit.xml -o out --touches bed.csv"),
+              0)
+        << said;
+    EXPECT_THAT(said, HasSubstr("(flatness-assumed)"));
+    EXPECT_LT(largest_of_mesh_um(text::read_file(folder + "/out/vernier.cfg")), 15);
+  }
+  // The square alone: its skew, and no mesh of zeros
+  ASSERT_EQ(run("vernier fit p.xml square.csv -o s.xml && vernier export klipper s.xml -o s --accept "
+                "measured-range"),
+            0)
+      << said;
+  const std::string text = text::read_file(folder + "/s/vernier.cfg");
+  EXPECT_THAT(text, Not(HasSubstr("[bed_mesh")));
+  EXPECT_THAT(text, HasSubstr("# Not measured: xz_skew and yz_skew"));
+}
+
 }  // namespace
 }  // namespace vernier::probed_bed_test

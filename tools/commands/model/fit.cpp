@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <memory>
@@ -190,6 +191,26 @@ std::vector<std::size_t> readings_of(const model::Measurement& m) {
   return readings;
 }
 
+/// The remedy if a free tool point explains the readings that the fit refuses; otherwise empty.
+std::string unknown_tool(const model::Machine& machine, const model::Measurement& m, fit::FitOptions options,
+                         const fit::FitResult& refused) {
+  std::vector<std::string> names;
+  for (const model::Static& one : machine.statics)
+    if (one.hidden && (one.name == "TPX" || one.name == "TPY" || one.name == "TPZ"))
+      names.push_back(one.name);
+  if (names.empty()) return {};
+  options.progress = {};
+  const fit::FitResult with_tool = fit::fit(fit::with_freedom(machine, names, {}), m, options);
+  if (!with_tool.absurd.empty() || !with_tool.after.rms_um || !refused.after.rms_um) return {};
+  constexpr double kFarBetter = 0.2;  // of the residual of the refused fit
+  if (*with_tool.after.rms_um > kFarBetter * *refused.after.rms_um) return {};
+  return fmt::format(
+      ". The tool point of the machine file is probably not that of the measurement: with a free tool point "
+      "the "
+      "residual is {:.3g} um. State the tool (vernier new --tool), or fit it: --free {}",
+      *with_tool.after.rms_um, fmt::join(names, ","));
+}
+
 void run_fit(const FitArguments& arguments) {
   Survey survey = read_survey(
       {arguments.machine, arguments.images, arguments.measurements, {}}, [&](const model::Machine& read) {
@@ -211,7 +232,9 @@ void run_fit(const FitArguments& arguments) {
                     fmt::format("iteration {}, weighted sum of squares {:.6g}", iteration, cost));
   };
   const fit::FitResult result = fit::fit(machine, m, options);
-  if (!result.absurd.empty()) throw text::LimitNotMet(result.absurd + "; nothing is written");
+  if (!result.absurd.empty())
+    throw text::LimitNotMet(result.absurd + "; nothing is written" +
+                            unknown_tool(machine, m, options, result));
   const nlohmann::ordered_json json = results::fit_json(result, m);
   if (!arguments.output.empty())
     text::write_file(
@@ -260,7 +283,8 @@ void register_fit(CLI::App& vernier) {
   command->add_option(
       "--free", arguments->free,
       "patterns of free parameters in addition to those of the file: statics, table.X.rY, BaseShift, "
-      "ToolShift, scalefactor.X; may be repeated");
+      "scalefactor.X, ToolShift (if the machine file has one); the tool point of a robot: TPX,TPY,TPZ; may "
+      "be repeated");
   command->add_option(
       "--hold", arguments->hold,
       "patterns of parameters that the fit does not change (applied after --free); may be repeated");

@@ -6,6 +6,7 @@
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/out/exporting.h"
 #include "tools/exchange/urdf_arm.h"
+#include "tools/text/files.h"
 
 namespace vernier::commands::exchange_cli {
 namespace {
@@ -14,7 +15,8 @@ void export_urdf(const ExchangeArguments& arguments) {
   const model::Machine machine = read_model(arguments.machine);
   const model::States at = state_of(machine, arguments);
   require_safe(machine, arguments, true);
-  const exchange::UrdfFile file = exchange::urdf_arm(machine, at);
+  const exchange::UrdfFile file =
+      exchange::urdf_arm(machine, at, exchange::joint_names(machine, text::read_file(arguments.machine)));
   const Json files = write_folder(arguments, {{"robot.urdf", file.text}});
   std::vector<exchange::LeftOut> left;
   if (file.worst_um > exchange::kNothing_um)
@@ -22,8 +24,8 @@ void export_urdf(const ExchangeArguments& arguments) {
   fmt::print(
       human_stream(arguments.json),
       "difference from the machine file at {} poses in the {} ranges of the axes: tool point rms {:.3g} um, "
-      "up to {:.3g} um, tool direction up to {:.3g} urad; without the calibration (the nominal arm): rms "
-      "{:.3g} um\n",
+      "up to {:.3g} um, tool direction up to {:.3g} urad; without the calibration (the nominal arm, "
+      "with the best base and tool point): rms {:.3g} um\n",
       file.positions, file.measured ? "measured" : "declared", file.rms_um, file.worst_um, file.worst_urad,
       file.rms_nominal_um);
   Json undetermined = Json::array();
