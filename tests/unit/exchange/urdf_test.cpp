@@ -65,6 +65,17 @@ Isometry3d by_urdf(const std::string& text, const std::vector<double>& positions
   return pose;
 }
 
+TEST(Urdf, JointsKeepTheNamesOfTheFileThatTheMachineCameFrom) {
+  std::string text = arm();
+  text.replace(text.find("<J1 "), 4, "<J1 joint=\"a1\" ");
+  const Machine machine = parse_machine(text, "arm.xml");
+  const std::string file =
+      exchange::urdf_arm(machine, make_states(1, machine), exchange::joint_names(machine, text)).text;
+  EXPECT_NE(file.find("<joint name=\"a1\""), std::string::npos);
+  EXPECT_EQ(file.find("<joint name=\"J1\""), std::string::npos);
+  EXPECT_NE(file.find("<joint name=\"J2\""), std::string::npos);
+}
+
 TEST(Urdf, JointsMultipliedTogetherAreTheChain) {
   const Machine machine = parse_machine(arm(), "arm.xml");
   const exchange::UrdfFile file = exchange::urdf_arm(machine, make_states(1, machine));

@@ -38,7 +38,7 @@ class PlaneFrame {
         least = std::min(least, across_[k].dot(point));
         most = std::max(most, across_[k].dot(point));
       }
-      constexpr double kSmallest_mm = 1e-6;
+      constexpr double kSmallest_mm = 1e-6;  // touches on one line have no bow across it
       middle_[k] = (least + most) / 2, half_[k] = std::max((most - least) / 2, kSmallest_mm);
     }
   }
