@@ -125,7 +125,7 @@ bool bow_is_read(const model::Machine& machine, const Measurement& m, const std:
     bow.row(i) = heights.bow[at].transpose();
     nuisance.row(i) = Eigen::Map<const Eigen::RowVectorXd>(heights.nuisance[at].data(), nuisance.cols());
   }
-  constexpr double kRounding = 1e-9;
+  constexpr double kRounding = 1e-9;  // slopes that differ by rounding alone are one slope
   const MatrixXd basis = maths::range_of(nuisance, kRounding);
   bow -= basis * (basis.transpose() * bow);
   // Sum of squares of the slopes of the readings by the least visible bow. Nine heights on a grid of 3 x 3
