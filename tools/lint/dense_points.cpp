@@ -60,6 +60,11 @@ double step_with_enough_readings(const LineOfAxis& line, double spacing, std::si
   // 126 readings of X alone with 21 stations of six columns (one reading each) left 3.1 to 3.6 um of the true
   // error of a simulated mill, seven stations (three readings each) 1.9 um.
   constexpr std::size_t kReadingsEach = 3;
+  // A laser along the axis determines one column of the table; repeated runs are then the further readings.
+  if (line.readings == line.rows && columns > 1) {
+    if (line.rows < kReadingsEach * line.positions.size()) return 0;
+    columns = 1;
+  }
   if (line.readings < columns * line.rows) return 0;  // one reading of a row determines one column
   const std::size_t stations = line.readings / (kReadingsEach * std::max<std::size_t>(columns, 1));
   if (stations < 2) return 0;

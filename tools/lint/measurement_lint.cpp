@@ -245,8 +245,11 @@ class Look {
                                   column.name, std::string("this column needs ") + beside + " beside it");
     }
     if (machine_ == nullptr) return;
+    const auto has_column = [&](const model::Axis& axis) { return table_.find(axis.name) != nullptr; };
+    const bool none =
+        machine_->axes.size() > 1 && std::none_of(machine_->axes.begin(), machine_->axes.end(), has_column);
     for (const model::Axis& axis : machine_->axes)
-      if (table_.find(axis.name) == nullptr) {
+      if (!has_column(axis)) {
         std::vector<std::string> names;
         for (const LintColumn& column : table_.columns) names.push_back(column.name);
         const auto meant = text::word_meant(axis.name, names);
@@ -254,6 +257,11 @@ class Look {
             table_.header_line, axis.name, "the column of this axis is missing",
             meant && text::letters_apart(axis.name, *meant) == 0
                 ? fmt::format("there is {}: names have capitals where the machine file has them", *meant)
+            : none
+                ? std::string(
+                      "no axis of the machine has a column; if the columns have other names (a1, joint_1), "
+                      "read them by their names: vernier import table FILE --machine MACHINE.xml -o "
+                      "NEW.csv")
                 : fmt::format(
                       "if the axis did not move, add its position: vernier import table FILE {} -o NEW.csv",
                       model::set_of_axis(axis)));

@@ -89,6 +89,13 @@ class Builder {
     for (const Axis& axis : machine_.axes)
       if (!reader_.has(axis.name)) missing.push_back(&axis);
     if (missing.empty()) return;
+    if (missing.size() == machine_.axes.size() && missing.size() > 1)
+      throw text::InputError(
+          reader_.header(), missing.front()->name,
+          fmt::format("no axis of the machine has a column; if the columns have other names "
+                      "(a1, joint_1), read them by their names: vernier import table {} "
+                      "--machine MACHINE.xml -o NEW.csv",
+                      reader_.header().file));
     std::string set;
     for (const Axis* const axis : missing) set += " " + set_of_axis(*axis);
     throw text::InputError(reader_.header(), missing.front()->name,

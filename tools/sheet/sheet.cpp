@@ -8,6 +8,7 @@
 #include <map>
 #include <string_view>
 
+#include "tools/sheet/ditto.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/csv.h"
 #include "tools/text/error.h"
@@ -75,12 +76,18 @@ std::size_t end_of_line(const std::string& text, std::size_t at) {
   return std::min(text.find_first_of("\r\n", at), text.size());
 }
 
+/// True if the part of a line before the quote that closes its first cell has the numbers of a row.
+bool row_before_quote(const std::string& part) {
+  return has_row_of_numbers(std::string_view(part).substr(0, part.find('"')));
+}
+
 /// The line at `at`, up to `end`, and the lines that continue a quoted cell of it, with a blank for each line
-/// break. `end`: moves to the end of the last line. `number`: counts the further lines.
+/// break. `end`: moves to the end of the last line. `number`: counts the further lines. A row of numbers is
+/// no part of a cell: then the line alone, with its open quote.
 std::string whole_line(const std::string& text, std::size_t at, std::size_t& end, std::size_t& number) {
   constexpr std::size_t kMostLines = 10;  // of one heading
   std::string line = text.substr(at, end - at);
-  bool open = leaves_quote_open(line, false);
+  bool open = leaves_quote_open(line, false), row = false;
   std::size_t last = end, more = 0;
   std::string joined = line;
   while (open && more < kMostLines && last < text.size()) {
@@ -88,10 +95,11 @@ std::string whole_line(const std::string& text, std::size_t at, std::size_t& end
     last = end_of_line(text, next);
     const std::string part = text.substr(next, last - next);
     joined += " " + part;
+    row |= row_before_quote(part);
     open = leaves_quote_open(part, true);
     ++more;
   }
-  if (open || more == 0) return line;
+  if (open || row || more == 0) return line;
   end = last;
   number += more;
   return joined;
@@ -276,7 +284,8 @@ bool is_title(const std::vector<Line>& lines, const std::vector<std::vector<std:
 void split(Sheet& sheet, const std::vector<Line>& lines) {
   std::vector<std::vector<std::string>> rows;
   for (const Line& line : lines) {
-    rows.push_back(text::fields_of(line.text, {sheet.separator, true}, {sheet.file, line.number}));
+    const std::string marked = sheet.separator == ' ' ? with_quoted_ditto_marks(line.text, true) : line.text;
+    rows.push_back(text::fields_of(marked, {sheet.separator, true}, {sheet.file, line.number}));
     if (rows.back().size() > kMostColumns)
       throw text::InputError(
           {sheet.file, line.number}, "",
@@ -475,6 +484,7 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
   make_even(sheet);
   read_accounting(sheet);
   settle_decimal(sheet, is_number, format.decimal_comma);
+  repeat_above_ditto_marks(sheet);
 }
 
 }  // namespace
@@ -500,7 +510,7 @@ void remove_row(Sheet& sheet, std::size_t row) {
 bool is_workbook(std::string_view bytes) { return bytes.starts_with("PK\x03\x04"); }
 
 char guess_separator(const std::string& text, const std::string& comment) {
-  std::vector<Line> lines = lines_of(text, 0, comment);
+  std::vector<Line> lines = lines_of(with_quoted_ditto_marks(text), 0, comment);
   const char said = said_separator(lines);
   return said != 0 ? said : separator_of_lines(lines);
 }
@@ -561,11 +571,12 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
       throw text::InputError({file, 0}, "",
                              "the file has bytes of value 0: it is neither a text nor a workbook (.xlsx)");
     refuse_document(text, file);
-    std::vector<Line> lines = lines_of(text, format.skip, format.comment, &sheet);
+    std::vector<Line> lines = lines_of(with_quoted_ditto_marks(text), format.skip, format.comment, &sheet);
     const char said = said_separator(lines);
     sheet.separator = format.separator != 0 ? format.separator : said != 0 ? said : separator_of_lines(lines);
     split(sheet, lines);
     drop_empty_columns(sheet);
+    repeat_above_ditto_marks(sheet);
     read_accounting(sheet);
     if (format.decimal_comma) {
       sheet.decimal_comma = *format.decimal_comma;

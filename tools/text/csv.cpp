@@ -46,7 +46,9 @@ std::vector<std::string> fields_of(const std::string& line, const FieldRules& ru
       throw InputError(place, text.substr(i, 20), "the field has text after its closing quote");
     }
   }
-  if (quoted) throw InputError(place, fields.back(), "a closing quote is missing");
+  if (quoted)
+    throw InputError(place, fields.back(),
+                     "a closing quote is missing: write it, or delete the quote that opens this field");
   close();
   return fields;
 }

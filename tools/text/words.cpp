@@ -139,8 +139,13 @@ std::string trimmed(std::string_view text) {
 
 std::string in_small_letters(std::string_view text) {
   std::string small(text);
-  for (char& c : small)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  for (std::size_t at = 0; at < small.size(); ++at) {
+    if (small[at] >= 'A' && small[at] <= 'Z') small[at] = static_cast<char>(small[at] - 'A' + 'a');
+    // UTF-8 has the letters À to Þ as C3 80 to C3 9E, and the small ones 20 above them; C3 97 is ×.
+    const auto one = static_cast<unsigned char>(small[at]);
+    const bool accented = at > 0 && static_cast<unsigned char>(small[at - 1]) == 0xC3;
+    if (accented && one >= 0x80 && one <= 0x9E && one != 0x97) small[at] = static_cast<char>(one + 0x20);
+  }
   return small;
 }
 

@@ -9,7 +9,7 @@ namespace vernier::text {
 /// Returns a text without leading and trailing blanks, tabs and line ends.
 std::string trimmed(std::string_view text);
 
-/// Returns a text in which a to z replace A to Z. Other characters do not change.
+/// Returns a text in small letters: A to Z and, in UTF-8, À to Þ. Other characters do not change.
 std::string in_small_letters(std::string_view text);
 
 /// Returns the words between any of the separators. Several successive separators count as one.

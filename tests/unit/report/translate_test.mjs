@@ -9,6 +9,12 @@ const { t, useCatalogue } = await import('../../../tools/report/web/src/translat
 useCatalogue(JSON.parse(readFileSync(new URL('../../../tools/report/languages/de.json', import.meta.url), 'utf8')));
 
 const german = {
+  'The residual is noise: there is nothing to add. ../j1/laser_X.csv: the lengths of this file have no u, and other readings have one. The estimate u = 0.452 µm ± 0.023 is used, from the residual of the file beside the fitted model, which can contain errors of the model (188 degrees of freedom). If you know the standard uncertainty, state it in a column u[µm].':
+    'Das Residuum ist Rauschen: es ist nichts hinzuzufügen. ../j1/laser_X.csv: die Längen dieser Datei haben kein u, und andere Messwerte haben eines. Verwendet wird die Schätzung u = 0,452 µm ± 0,023, aus dem Residuum der Datei gegen das angepasste Modell, das Fehler des Modells enthalten kann (188 Freiheitsgrade). Wenn die Standardunsicherheit bekannt ist, geben Sie sie in einer Spalte an: u[µm].',
+  'laser_Y.csv: the rotations of this file have no ur, and other readings have one. The estimate ur = 7.3 arcsec +- 0.36 is used, from the repeated readings of the file (170 degrees of freedom).':
+    'laser_Y.csv: die Drehungen dieser Datei haben kein ur, und andere Messwerte haben eines. Verwendet wird die Schätzung ur = 7,3 arcsec ± 0,36, aus den wiederholten Messwerten der Datei (170 Freiheitsgrade).',
+  'X table: reversal error that builds up, reversal value B 13.4 ± 0.8 µm, complete after a travel of 1.0 ± 1.0 mm':
+    'X-Tisch: Umkehrfehler mit Anlaufweg, Umkehrspanne B 13,4 ± 0,8 µm, vollständig nach einem Weg von 1,0 ± 1,0 mm',
   'Missing: X carriage: backlash, reversal value B −8.0 ± 0.3 µm': 'Es fehlt: X-Schlitten: Umkehrspiel, Umkehrspanne B −8,0 ± 0,3 µm',
   'X carriage: thermal growth, by T_bed −11.6 ± 0.4 µm/(m °C)': 'X-Schlitten: Wärmedehnung, durch T_bed −11,6 ± 0,4 µm/(m °C)',
   'Possibly the survey was disturbed: a drift of 273 µm. A missing effect (such as a backlash) can look like this disturbance: vernier diagnose compares the causes.':

@@ -286,8 +286,9 @@ std::string option_of_positions(const sheet::Sheet& sheet, const sheet::SheetTab
     if (length && k < deviation) sized = k;
   }
   if (!nearest) nearest = sized;
-  if (!nearest) return "--set \"X[mm]=0\"";
-  return fmt::format("--column \"X{}={}\"", columns[*nearest].unit.empty() ? "[mm]" : "",
+  const std::string axis = axis_to_try(sheet, table);
+  if (!nearest) return fmt::format("--set \"{}[mm]=0\"", axis);
+  return fmt::format("--column \"{}{}={}\"", axis, columns[*nearest].unit.empty() ? "[mm]" : "",
                      table.headings[*nearest].text);
 }
 

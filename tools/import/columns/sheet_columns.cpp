@@ -187,6 +187,7 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
     if (guess.is_axis(axis) && !axes.contains(axis) && measured.contains(text::in_small_letters(axis)))
       alone_measured.insert(axis);
   if (moved.empty()) moved = alone_measured;
+  const std::string to_try = axis_to_try(sheet, table);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     SheetColumn& column = columns[k];
     const Holds content = holds(sheet, table, k);
@@ -206,13 +207,14 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       leave_column(column, fmt::format("the table has no position of {}: state the position, for example {}",
                                        column.name, set_position(column)));
     else if (deviation && column.name.empty())
-      leave_column(
-          column, fmt::format("the axis of this deviation is not known: state the axis, --deviation "
-                              "\"X={}\"{}",
-                              table.headings[k].text,
-                              positions.empty() ? " " + option_of_positions(sheet, table, columns, guess, k) +
-                                                      " (with the position of X)"
-                                                : ""));
+      leave_column(column,
+                   fmt::format("the axis of this deviation is not known: state the axis, --deviation "
+                               "\"{}={}\"{}",
+                               to_try, table.headings[k].text,
+                               positions.empty()
+                                   ? fmt::format(" {} (with the position of {})",
+                                                 option_of_positions(sheet, table, columns, guess, k), to_try)
+                                   : ""));
     else if (deviation && !reading_of(column.name))
       leave_column(column,
                    fmt::format("no reading of a measurement file is along {}: state the axis that it is "
@@ -225,8 +227,9 @@ void settle(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::vect
       column.name = format::axis_column(format::AxisQuantity::kSense, *moved.begin());
     else if (column.name == kSensePrefix)
       leave_column(column,
-                   "the axis of this approach direction is not known: state the axis, --column \"dirX=" +
-                       table.headings[k].text + "\"");
+                   fmt::format("the axis of this approach direction is not known: state the axis, --column "
+                               "\"dir{}={}\"",
+                               to_try, table.headings[k].text));
     else if (column.name == columns::kTime && content == Holds::kDates)
       leave_column(column, "this column has dates or times of day, not seconds");
     // Dates where a position or a reading should be are refused with their row.
@@ -291,7 +294,11 @@ std::vector<SheetColumn> columns_by_headings(const sheet::Sheet& sheet, const sh
                                              const SheetWishes& wishes) {
   const Guess guess(wishes);
   std::vector<SheetColumn> columns;
-  for (const sheet::Heading& heading : table.headings) columns.push_back(guess.column(heading));
+  for (const sheet::Heading& heading : table.headings) {
+    columns.push_back(guess.column(heading));
+    if (has_mean_bar(heading.text))
+      leave_column(columns.back(), "the bar above the letter is the sign of a mean");
+  }
   for (const SheetWishes::Assignment& wish : wishes.assignments) {
     const std::size_t at = find_heading(table, wish.heading);
     if (at == std::string::npos) {

@@ -356,6 +356,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
                      columns_by_headings(result.sheet, result.table, result.wishes));
   result.columns = columns_of_sheet(result.sheet, result.table, result.wishes);
   refuse_another_axis(result.sheet, result.table, result.columns, result.wishes);
+  note_axis_of_name(result.sheet, result.table, result.columns, result.wishes);
   fill_down(result);
   settle_directions(result.sheet, result.table, result.columns, result.runs > 0);
   note_units(result);

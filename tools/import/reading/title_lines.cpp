@@ -118,6 +118,14 @@ std::string title_of_axis(const sheet::Sheet& sheet, const sheet::SheetTable& ta
   return named && !other ? found : "";
 }
 
+/// True if a cell above the headings has the letter of this axis as a word.
+bool titles_name(const sheet::Sheet& sheet, const sheet::SheetTable& table, const std::string& axis) {
+  for (const std::string& cell : title_cells(sheet, table))
+    for (const std::string& word : heading_words(cell))
+      if (word == axis) return true;
+  return false;
+}
+
 bool has_column_of(const sheet::SheetTable& table, bool (*is)(const std::string&)) {
   const SheetWishes usual;
   const Guess guess(usual);
@@ -276,6 +284,12 @@ void refuse_another_axis(const sheet::Sheet& sheet, const sheet::SheetTable& tab
   const std::string axis = *axes.begin();
   std::string text = title_of_axis(sheet, table, titled, axis);
   if (text.empty()) text = title_of_both(sheet, table, axis, wishes);
+  const bool by_name =
+      text.empty() && axis_of_title_cells(sheet, table).empty() && !titles_name(sheet, table, axis);
+  for (const sheet::Heading& heading : table.headings)
+    for (const std::string& word : heading_words(heading.text))
+      if (by_name && word == titled) return;  // straightness: "Abweichung Y" beside "X"
+  if (by_name) text = sheet.sheet;
   if (text.empty()) return;
   std::string by_title, by_heading;
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -297,9 +311,38 @@ void refuse_another_axis(const sheet::Sheet& sheet, const sheet::SheetTable& tab
   }
   throw text::InputError(
       {sheet.file, sheet.line[table.heading_row]}, text,
-      fmt::format("this title states the axis {}, and the headings have the positions of {}. If the title is "
-                  "right, give{}; if the headings are right, give {}",
-                  titled, axis, by_title, by_heading));
+      fmt::format("this {0} states the axis {1}, and the headings have the positions of {2}. If the {0} is "
+                  "right, give{3}; if the headings are right, give {4}",
+                  by_name ? "name of the sheet" : "title", titled, axis, by_title, by_heading));
+}
+
+void note_axis_of_name(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                       const std::vector<SheetColumn>& columns, const SheetWishes& wishes) {
+  const std::string named = axis_of_title_cells(sheet, table).empty() ? axis_of_sheet_name(sheet) : "";
+  const Guess guess(wishes);
+  if (named.empty() || !guess.is_axis(named)) return;
+  std::string from_name, given;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    if (column.use == SheetColumn::Use::kLeft) continue;
+    if (column.name == named || reading_of(named) == column.name) {
+      const std::vector<std::string> words = heading_words(text::in_small_letters(table.headings[k].text));
+      if (std::find(words.begin(), words.end(), text::in_small_letters(named)) != words.end()) return;
+      if (column.why == "as given") return;
+      if (column.name == named && column.use == SheetColumn::Use::kColumn) from_name = table.headings[k].text;
+    } else if (column.why == "as given" && guess.is_axis(column.name)) {
+      given = column.name;
+    }
+  }
+  if (!from_name.empty())
+    sheet.notes.push_back(
+        fmt::format("\"{}\" is the position of {}: the name of the sheet \"{}\" states this axis", from_name,
+                    named, sheet.sheet));
+  else if (!given.empty())
+    sheet.notes.push_back(fmt::format(
+        "the name of the sheet \"{}\" states the axis {}, and the columns are assigned to {}: check "
+        "the axis",
+        sheet.sheet, named, given));
 }
 
 }  // namespace vernier::importer

@@ -38,4 +38,9 @@ void add_run_of_title(sheet::Sheet& sheet, sheet::SheetTable& table,
 void refuse_another_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                          const std::vector<SheetColumn>& columns, const SheetWishes& wishes);
 
+/// Notes that the axis of the positions is that of the name of the sheet, or that the columns are assigned to
+/// another axis.
+void note_axis_of_name(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                       const std::vector<SheetColumn>& columns, const SheetWishes& wishes);
+
 }  // namespace vernier::importer

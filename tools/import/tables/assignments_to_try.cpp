@@ -112,7 +112,7 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
   std::string position, reading, unit;
   std::optional<std::size_t> at_position, at_reading;
   if (axis != columns.end()) at_position = static_cast<std::size_t>(axis - columns.begin());
-  std::string name = axis == columns.end() ? "X" : axis->name;
+  std::string name = axis == columns.end() ? axis_to_try(sheet, table) : axis->name;
   bool actual = false, correction = false;
   const auto has = [&](Guess::Bare kind) {
     return std::any_of(table.headings.begin(), table.headings.end(),
@@ -137,8 +137,8 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
     }
     if (bare == Guess::Bare::kTarget && axis == columns.end() && position.empty()) {
       at_position = k;
-      position =
-          fmt::format("--column \"{}={}\" ", column.unit.empty() ? "X[mm]" : "X", table.headings[k].text);
+      position = fmt::format("--column \"{}{}={}\" ", name, column.unit.empty() ? "[mm]" : "",
+                             table.headings[k].text);
     } else if (reading.empty() || (bare == Guess::Bare::kActual && !actual)) {
       at_reading = k;
       reading = table.headings[k].text;

@@ -279,6 +279,68 @@ void judge_order(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vecto
       words, heading, columns[k].name, heading);
 }
 
+/// Rows whose direction differs from those of the rows above and below, where the positions go on in one
+/// direction, and the number of the other steps that agree with the direction of their row.
+struct SingleRows {
+  std::vector<std::size_t> lines;
+  std::size_t agreeing = 0;
+};
+
+SingleRows single_rows_of(const sheet::Sheet& sheet, const RowOrder& order) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = order.first_data; row < sheet.rows.size(); ++row)
+    if (!sheet::is_blank(sheet.rows[row])) rows.push_back(row);
+  const auto sense = [&](std::size_t at) {
+    return sense_of_code(code_of(sheet.rows[rows[at]][order.direction]));
+  };
+  /// Direction of the motion to the row `at`; 0 if another axis moves as well.
+  const auto motion = [&](std::size_t at) {
+    const auto &before = sheet.rows[rows[at - 1]], &here = sheet.rows[rows[at]];
+    for (const std::size_t other : order.others)
+      if (before[other] != here[other]) return 0;
+    const auto from = sheet::number_at(sheet, rows[at - 1], order.position),
+               to = sheet::number_at(sheet, rows[at], order.position);
+    return !from || !to ? 0 : *to > *from ? 1 : *to < *from ? -1 : 0;
+  };
+  SingleRows found;
+  for (std::size_t at = 1; at < rows.size(); ++at) {
+    const int own = sense(at), moved = motion(at);
+    if (own == 0 || moved == 0) continue;
+    if (own == moved)
+      ++found.agreeing;
+    else if (at + 1 < rows.size() && motion(at + 1) == moved && sense(at - 1) == -own &&
+             sense(at + 1) == -own)
+      found.lines.push_back(sheet.line[rows[at]]);
+  }
+  return found;
+}
+
+/// A single row with the other direction inside a motion in one direction: a doubt, unless the user assigned
+/// the column.
+void judge_single_rows(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
+                       std::size_t position, std::size_t k) {
+  constexpr std::size_t kTimes = 3;  // steps that agree for each row that does not: else the rows are sorted
+  if (!columns[k].doubt.empty()) return;
+  const SingleRows single = single_rows_of(sheet, order_of(table, columns, position, k));
+  if (single.lines.empty() || single.agreeing < kTimes * single.lines.size()) return;
+  const std::string& heading = table.headings[k].text;
+  const std::string words = fmt::format(
+      "the direction in {} differs from the rows above and below, and the positions of {} go on in one "
+      "direction",
+      lines_text(single.lines), columns[position].name);
+  if (columns[k].why != "by its heading" || heading == columns[k].name) {
+    sheet.notes.push_back(fmt::format("\"{}\": {}; the directions are used as written", heading, words));
+    return;
+  }
+  columns[k].doubt_place = {sheet.file, single.lines.front()};
+  columns[k].doubt_word = heading;
+  columns[k].doubt = fmt::format(
+      "{}; correct the direction, or leave the column out (--leave \"{}\"); if each row was approached in "
+      "its "
+      "written direction, give --column \"{}={}\"",
+      words, heading, columns[k].name, heading);
+}
+
 void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vector<SheetColumn>& columns,
                    std::size_t k, bool unfolded) {
   const std::string axis =
@@ -299,6 +361,7 @@ void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vec
     judge_signs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
     judge_runs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
     judge_order(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
+    judge_single_rows(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
     return;
   }
   const std::string& heading = table.headings[k].text;
@@ -327,6 +390,7 @@ void settle_column(sheet::Sheet& sheet, const sheet::SheetTable& table, std::vec
   if (position == columns.end()) return;
   judge_runs(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
   judge_order(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
+  judge_single_rows(sheet, table, columns, static_cast<std::size_t>(position - columns.begin()), k);
 }
 
 /// "1+", "2 hin" or "Lauf 1 +": the run and the direction; nullopt for other texts.

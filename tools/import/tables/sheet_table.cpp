@@ -398,8 +398,12 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
         heading, table.headings[k].text,
         fmt::format(
             "this column and the column \"{}\" both have the meaning {}: leave out the one that is no "
-            "reading, {} or {}",
-            table.headings[made_of.at(name)].text, name, option(made_of.at(name)), option(k)));
+            "reading, {} or {}{}",
+            table.headings[made_of.at(name)].text, name, option(made_of.at(name)), option(k),
+            table.headings[made_of.at(name)].text == table.headings[k].text
+                ? "; if they are repeated runs, write the number of the run before each heading (Lauf 1, "
+                  "Lauf 2)"
+                : ""));
   };
   std::map<std::string, std::size_t> axis_column;
   for (std::size_t k = 0; k < columns.size(); ++k)

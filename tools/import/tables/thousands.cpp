@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "tools/format/units.h"
@@ -83,7 +84,45 @@ class Thousands {
     for (const auto& [row, both] : doubtful) sheet_.rows[row][k] = both.whole;
   }
 
+  /// Refuses the targets of a linear axis whose numbers can all be thousands, in a table where no cell shows
+  /// the decimal sign. A measured position with as many decimals decides: no machine is wrong by whole
+  /// millimetres at each target.
+  void refuse_undecided_targets(std::size_t k) const {
+    constexpr double kLongestAxis_mm = 20'000;  // a longer one is hardly measured
+    constexpr std::size_t kFewest = 2;
+    const auto unit = format::find_unit(columns_[k].unit);
+    if (!sheet_.decimal_doubtful || !is_linear_axis(columns_[k]) || !unit) return;
+    std::vector<std::pair<std::size_t, Meanings>> doubtful;
+    for (std::size_t row = table_.first_data; row < sheet_.rows.size(); ++row) {
+      const auto both = both_meanings(row, k);
+      const auto value = value_at(row, k);
+      if (!both && value && *value != 0) return;
+      if (both && std::abs(both->thousands) * unit->factor > kLongestAxis_mm) return;
+      if (both) doubtful.emplace_back(row, *both);
+      for (std::size_t other = 0; other < columns_.size(); ++other)
+        if (columns_[other].use == Use::kColumn && reading_of(columns_[k].name) == columns_[other].name &&
+            both_meanings(row, other))
+          return;
+    }
+    if (doubtful.size() < kFewest) return;
+    const auto& [row, both] = doubtful.front();
+    throw text::InputError(
+        {sheet_.file, sheet_.line[row]}, sheet_.rows[row][k],
+        fmt::format(
+            "this cell of \"{}\" can be {:.6g} or {:.6g}: no cell of the table shows whether the {} is "
+            "the decimal sign or separates thousands. If the cell is {:.6g}, give --decimal {}; if the "
+            "cell is {:.6g}, give --decimal {}",
+            table_.headings[k].text, both.decimal, both.thousands, sheet_.decimal_comma ? "comma" : "point",
+            both.decimal, sheet_.decimal_comma ? "comma" : "point", both.thousands,
+            sheet_.decimal_comma ? "point" : "comma"));
+  }
+
  private:
+  static bool is_linear_axis(const SheetColumn& column) {
+    return column.use == Use::kColumn && column.name.size() == 1 &&
+           std::string_view("XYZUVW").find(column.name) != std::string_view::npos && !is_angle(column.unit);
+  }
+
   std::optional<double> value_at(std::size_t row, std::size_t k) const {
     const auto number = sheet::plain_number(sheet_.rows[row][k], sheet_.decimal_comma);
     return number ? text::parse_number(*number) : std::nullopt;
@@ -170,6 +209,7 @@ void settle_thousands(sheet::Sheet& sheet, const sheet::SheetTable& table,
   for (std::size_t k = 0; k < columns.size(); ++k)
     if (is_number(k)) thousands.by_size(k);
   decide_beside();
+  for (std::size_t k = 0; k < columns.size(); ++k) thousands.refuse_undecided_targets(k);
 }
 
 }  // namespace vernier::importer

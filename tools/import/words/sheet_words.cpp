@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <set>
 
 #include "tools/text/words.h"
@@ -13,6 +14,7 @@ namespace {
 using WordSet = std::set<std::string, std::less<>>;
 
 const WordSet kTargetWords = {
+    "pi",  // P_i of ISO 230-2
     "soll",        "sollwert",    "target",       "nominal",      "cmd",          "command",
     "commanded",   "position",    "pos",          "set",          "ziel",         "achse",
     "axis",        "machine",     "maschine",     "nom",          "sollposition", "zielposition",
@@ -26,13 +28,11 @@ const WordSet kMeasuredWords = {
 /// The position that the control shows.
 const WordSet kDisplayWords = {"anzeige",   "angezeigt", "angezeigte",     "anzeigewert", "display",
                                "displayed", "dro",       "digitalanzeige", "indicated",   "readout"};
-const WordSet kDeviationWords = {
-    "abweichung", "abweichungen", "deviation", "deviations", "dev", "error", "errors", "fehler", "err",
-    "delta", "diff", "abw", "differenz", "difference", "ecart",
-    // Of an accented capital the small letter is not known here.
-    "\u00e9cart", "\u00c9cart", "\u00e9carts", "\u00c9carts",
-    // Greek letters, and the sign of the increment; the small letters of words are those of ASCII.
-    "\u0394", "\u03b4", "\u2206"};
+const WordSet kDeviationWords = {"abweichung", "abweichungen", "deviation", "deviations", "dev", "error",
+                                 "errors", "fehler", "err", "delta", "diff", "abw", "differenz", "difference",
+                                 "ecart", "\u00e9cart", "\u00e9carts",
+                                 // Greek letters, and the sign of the increment.
+                                 "\u0394", "\u03b4", "\u2206"};
 const WordSet kCorrectionWords = {"korr", "corr", "comp", "komp"};
 constexpr std::array<std::string_view, 4> kCorrectionStarts = {"korrektur", "correction", "kompensation",
                                                                "compensation"};
@@ -116,12 +116,16 @@ bool says_measured(const std::string& word) { return kMeasuredWords.contains(wor
 bool says_display(const std::string& word) { return kDisplayWords.contains(word); }
 bool says_statistic(const std::string& word) { return kStatisticWords.contains(word); }
 bool says_standard_deviation(std::string_view text) {
-  // Without the accented capital, which has no small letter here.
+  // "Écart-type", also without its accent.
   const std::string small = text::in_small_letters(text);
   return small.find("cart-type") != std::string::npos || small.find("cart type") != std::string::npos;
 }
+/// True for a letter with a bar above it (U+0304, U+0305), the sign of a mean: "x\u0304".
+bool has_mean_bar(std::string_view heading) {
+  return heading.find("\u0304") != std::string_view::npos || heading.find("\u0305") != std::string_view::npos;
+}
 bool names_statistic(const sheet::Heading& heading) {
-  if (says_standard_deviation(heading.name)) return true;
+  if (says_standard_deviation(heading.name) || has_mean_bar(heading.text)) return true;
   const std::vector<std::string> words = heading_words(text::in_small_letters(heading.name));
   // "Reversal error" is the difference of the means of both directions (ISO 230-2:2014, 2.11).
   static const WordSet kOfReversal = {"reversal", "error", "value", "span", "b"};
@@ -196,7 +200,24 @@ std::vector<std::string> title_cells(const sheet::Sheet& sheet, const sheet::She
   return cells;
 }
 
-std::string axis_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+std::string axis_of_sheet_name(const sheet::Sheet& sheet) {
+  if (!sheet.workbook) return "";
+  std::string axis;
+  std::size_t linear = 0, rotary = 0;
+  bool axis_word = false;
+  for (const std::string& word : heading_words(sheet.sheet)) {
+    const std::string small = text::in_small_letters(word);
+    axis_word |= small == "axis" || small == "achse" || small == "axe";
+    if (small.size() != 1 || std::string_view("xyzuvwabc").find(small) == std::string_view::npos) continue;
+    ++(std::string_view("abc").find(small) == std::string_view::npos ? linear : rotary);
+    axis = std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(small[0]))));
+  }
+  return linear + rotary == 1 && (linear == 1 || axis_word) ? axis : "";
+}
+
+namespace {
+
+std::set<std::string> axes_of_title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
   std::vector<std::string> words;
   for (const std::string& cell : title_cells(sheet, table)) {
     for (std::string& word : heading_words(cell)) words.push_back(std::move(word));
@@ -216,7 +237,25 @@ std::string axis_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& t
     else if (next < words.size() && letter(words[next]))
       found.insert(words[next]);
   }
-  return found.size() == 1 ? *found.begin() : "";
+  return found;
+}
+
+std::string only_one_of(const std::set<std::string>& axes) { return axes.size() == 1 ? *axes.begin() : ""; }
+
+}  // namespace
+
+std::string axis_of_title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  return only_one_of(axes_of_title_cells(sheet, table));
+}
+
+std::string axis_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  const std::set<std::string> titled = axes_of_title_cells(sheet, table);
+  return titled.empty() ? axis_of_sheet_name(sheet) : only_one_of(titled);
+}
+
+std::string axis_to_try(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  const std::string axis = axis_of_titles(sheet, table);
+  return axis.empty() ? "X" : axis;
 }
 
 }  // namespace vernier::importer

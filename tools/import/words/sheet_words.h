@@ -71,8 +71,21 @@ int sense_said(std::string_view word);
 /// Returns the cells above the headings of a table.
 std::vector<std::string> title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table);
 
-/// Returns the only axis that the cells above the headings name ("Achse: X", "X-Achse", "Axis X"); empty if
-/// they name no axis or several axes.
+/// True for a heading with a bar above a letter, the sign of a mean.
+bool has_mean_bar(std::string_view heading);
+
+/// Returns the only axis that the name of a sheet in a workbook states ("Y", "Y-Achse", "Laser Y"); empty if
+/// the name states no axis or several axes. A, B and C alone are axes only beside the word "axis".
+std::string axis_of_sheet_name(const sheet::Sheet& sheet);
+
+/// Returns the only axis that the cells above the headings name; empty if they name no axis or several axes.
+std::string axis_of_title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table);
+
+/// Returns the only axis that the cells above the headings name ("Achse: X", "X-Achse", "Axis X"), or, if
+/// they name no axis, that of the name of the sheet; empty if they name several axes.
 std::string axis_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& table);
+
+/// Returns the axis of the titles or of the name of the sheet for an example of an option, or X.
+std::string axis_to_try(const sheet::Sheet& sheet, const sheet::SheetTable& table);
 
 }  // namespace vernier::importer

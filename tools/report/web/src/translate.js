@@ -6,8 +6,8 @@ const kNumber = '[+−-]?\\d(?:[\\d.]*\\d)?(?:e[+−-]?\\d+)?';
 const kNumbers = new RegExp(kNumber, 'g'),
   kOnlyNumber = new RegExp(`^${kNumber}( [%‰°]| [µu]?m|)$`);
 
-// A sentence begins with a capital letter, a number, or the name of a reading.
-const kBetweenSentences = /(?<=[.!?]) (?=[A-Z\d]|distance )/;
+// A sentence begins with a capital letter, a number, the name of a reading, or the name of a file.
+const kBetweenSentences = /(?<=[.!?]) (?=[A-Z\d]|distance |\S+\.\w+: the )/;
 
 let exact = new Map(),
   patterns = [],

@@ -11,6 +11,9 @@ function asked(refusal) {
   return { file, columns: [...(refusal?.matchAll(/--set "([^"=]+)=POSITION"/g) ?? [])].map((one) => one[1]) };
 }
 
+const kNames =
+  'The columns may have other names: a1 or joint_1 instead of the names in the machine file. The program compares the names and numbers, and writes a new measurement file.';
+
 const number = (id, label, size) => el('input', { type: 'text', inputmode: 'decimal', id, 'aria-label': label, size });
 const value = (input) => input.value.trim().replace(',', '.');
 
@@ -37,10 +40,29 @@ export function stoodPanel(choose) {
     );
     return el('div', { class: 'controls' }, el('label', { class: 'choice' }, 'artefact (name:type) ', field), add);
   };
+  /** A new measurement file whose joints have the names of the machine. */
+  const byMachine = (file) => {
+    const add = button(
+      'Read the columns as the axes of the machine',
+      () =>
+        guarded(error, async () => {
+          const output = freeName(`${file.replace(/\.[^.]*$/, '')}_read`, '.csv');
+          await run({ command: 'import table', file, machine: store.machine, output });
+          await choose(
+            store.machine,
+            store.measurements.map((one) => (one === file ? output : one)),
+          );
+        }),
+      { id: 'by-machine' },
+    );
+    return el('div', { class: 'controls' }, add);
+  };
   const draw = () => {
     const { file, columns } = asked(store.refusal);
     if (!store.refusal) return room.replaceChildren();
     const words = el('p', { class: 'error', role: 'alert' }, store.refusal);
+    if (file && /--machine MACHINE/.test(store.refusal))
+      return room.replaceChildren(panel(`No axis of the machine has a column in ${file}`, el('p', {}, kNames), error, byMachine(file)));
     if (!columns.length || !file)
       return room.replaceChildren(
         panel(
