@@ -139,28 +139,28 @@ std::string with_quoted_ditto_marks(const std::string& text, bool blanks) {
   return Quotes(text, blanks).with_marks_in_quotes();
 }
 
-void repeat_above_ditto_marks(Sheet& sheet) {
+std::string repeat_above_ditto_marks(std::vector<std::vector<std::string>>& rows,
+                                     const std::vector<std::size_t>& line, const std::string& file) {
   std::size_t repeated = 0, first_line = 0;
   std::string first_mark;
-  for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
-    std::vector<std::string>& cells = sheet.rows[row];
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    std::vector<std::string>& cells = rows[row];
     if (std::none_of(cells.begin(), cells.end(), is_ditto_mark) || numbers_in(cells) == 0) continue;
     for (std::size_t k = 0; k < cells.size(); ++k) {
       if (!is_ditto_mark(cells[k])) continue;
-      if (row == 0 || numbers_in(sheet.rows[row - 1]) == 0)
-        throw text::InputError({sheet.file, sheet.line[row]}, cells[k],
+      if (row == 0 || numbers_in(rows[row - 1]) == 0)
+        throw text::InputError({file, line[row]}, cells[k],
                                "this is a ditto mark, and no row of numbers is above it: write the value "
                                "into the cell");
-      if (++repeated == 1) first_line = sheet.line[row], first_mark = cells[k];
-      cells[k] = sheet.rows[row - 1][k];
+      if (++repeated == 1) first_line = line[row], first_mark = cells[k];
+      cells[k] = rows[row - 1][k];
     }
   }
+  if (repeated == 0) return {};
   if (repeated == 1)
-    sheet.notes.push_back(fmt::format("the ditto mark {} in line {} repeats the cell above it", first_mark,
-                                      std::to_string(first_line)));
-  else if (repeated > 1)
-    sheet.notes.push_back(fmt::format("{} ditto marks such as {} in line {} repeat the cells above them",
-                                      std::to_string(repeated), first_mark, std::to_string(first_line)));
+    return fmt::format("the ditto mark {} in line {} repeats the cell above it", first_mark, first_line);
+  return fmt::format("{} ditto marks such as {} in line {} repeat the cells above them", repeated, first_mark,
+                     first_line);
 }
 
 }  // namespace vernier::sheet

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <cstddef>
 #include <string>
 #include <string_view>
-
-#include "tools/sheet/sheet.h"
+#include <vector>
 
 namespace vernier::sheet {
 
@@ -14,8 +14,10 @@ bool has_row_of_numbers(std::string_view line);
 /// quotes are not changed, over several lines as well. `blanks`: true if blanks separate the cells.
 std::string with_quoted_ditto_marks(const std::string& text, bool blanks = false);
 
-/// Replaces each ditto mark (a quote alone in its cell, "dto.") in a row of numbers by the cell above it,
-/// with a note. Throws InputError for a mark without a row of numbers above it.
-void repeat_above_ditto_marks(Sheet& sheet);
+/// Replaces each ditto mark (a quote alone in its cell, "dto.") in a row of numbers by the cell above it.
+/// `line`: line number of each row. Returns a note for the user; empty if there are no marks. Throws
+/// InputError for a mark without a row of numbers above it.
+std::string repeat_above_ditto_marks(std::vector<std::vector<std::string>>& rows,
+                                     const std::vector<std::size_t>& line, const std::string& file);
 
 }  // namespace vernier::sheet

@@ -18,6 +18,11 @@
 namespace vernier::sheet {
 namespace {
 
+void repeat_above_ditto_marks_of(Sheet& sheet) {
+  std::string note = repeat_above_ditto_marks(sheet.rows, sheet.line, sheet.file);
+  if (!note.empty()) sheet.notes.push_back(std::move(note));
+}
+
 struct Line {
   std::string text;
   std::size_t number = 0;
@@ -484,7 +489,7 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
   make_even(sheet);
   read_accounting(sheet);
   settle_decimal(sheet, is_number, format.decimal_comma);
-  repeat_above_ditto_marks(sheet);
+  repeat_above_ditto_marks_of(sheet);
 }
 
 }  // namespace
@@ -576,7 +581,7 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     sheet.separator = format.separator != 0 ? format.separator : said != 0 ? said : separator_of_lines(lines);
     split(sheet, lines);
     drop_empty_columns(sheet);
-    repeat_above_ditto_marks(sheet);
+    repeat_above_ditto_marks_of(sheet);
     read_accounting(sheet);
     if (format.decimal_comma) {
       sheet.decimal_comma = *format.decimal_comma;
