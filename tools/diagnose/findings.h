@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,9 +24,17 @@ struct Findings {
   const std::vector<std::size_t>& listed;         // indices of the effects in the order of
                                                   // Diagnosis::candidates
 
-  /// Returns the alternatives to an accepted effect that the data do not reject.
+  /// Returns the alternatives to an accepted effect that the data do not reject. An alternative to the first
+  /// effect is none to a later one: it would be counted twice.
   std::vector<std::size_t> close(std::size_t position) const {
-    return alternatives[position].within(options.thresholds.acceptance.distance);
+    const double distance = options.thresholds.acceptance.distance;
+    std::vector<std::size_t> items = alternatives[position].within(distance);
+    if (position == 0) return items;
+    const std::vector<std::size_t> of_first = alternatives.front().within(distance);
+    std::erase_if(items, [&](std::size_t item) {
+      return std::find(of_first.begin(), of_first.end(), item) != of_first.end();
+    });
+    return items;
   }
 };
 
