@@ -28,7 +28,10 @@ struct Findings {
   /// effect is none to a later one: it would be counted twice.
   std::vector<std::size_t> close(std::size_t position) const {
     const double distance = options.thresholds.acceptance.distance;
-    std::vector<std::size_t> items = alternatives[position].within(distance);
+    // A rare form of the same columns is at the limit itself, and the fits beside other effects move it.
+    constexpr double kMovedByFits = 0.1;  // BIC
+    std::vector<std::size_t> items =
+        alternatives[position].within(position == 0 ? distance : distance - kMovedByFits);
     if (position == 0) return items;
     const std::vector<std::size_t> of_first = alternatives.front().within(distance);
     std::erase_if(items, [&](std::size_t item) {
