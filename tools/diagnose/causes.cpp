@@ -32,6 +32,7 @@ class Causes {
         position_(position),
         first_(found.accepted[position]) {}
 
+  /// Most likely first. `aliases`: other periods of the effect.
   std::vector<Cause> all(const std::vector<double>& aliases) const {
     const double own = found_.finder.evidence_for(first_);
     std::vector<Cause> causes = {entry(first_, pool_[first_].scored.scanned, own)};
@@ -41,6 +42,8 @@ class Causes {
     for (const Alternative& other : found_.alternatives[position_].other)
       if (std::find(close.begin(), close.end(), other.item) != close.end())
         causes.push_back(entry(other.item, pool_[other.item].scored.scanned, own - other.distance / 2));
+    std::stable_sort(causes.begin(), causes.end(),
+                     [](const Cause& a, const Cause& b) { return a.evidence > b.evidence; });
     return causes;
   }
 
@@ -72,11 +75,6 @@ class Causes {
   const std::size_t position_, first_;
 };
 
-void sort_by_evidence(std::vector<Cause>& causes) {
-  std::stable_sort(causes.begin(), causes.end(),
-                   [](const Cause& a, const Cause& b) { return a.evidence > b.evidence; });
-}
-
 /// Aliases of the first step's period.
 std::vector<double> aliases_of(const Diagnosis& answer) {
   for (const CandidateFinding& one : answer.candidates)
@@ -96,9 +94,7 @@ Cause instrument_cause(const std::string& kind, double evidence) {
 }
 
 std::vector<Cause> causes_of_step(const Findings& found, std::size_t position) {
-  std::vector<Cause> causes = Causes(found, position).all({});
-  sort_by_evidence(causes);
-  return causes;
+  return Causes(found, position).all({});
 }
 
 std::vector<Cause> causes_not_rejected(const Findings& found, const Diagnosis& answer) {
@@ -107,7 +103,6 @@ std::vector<Cause> causes_not_rejected(const Findings& found, const Diagnosis& a
   // Confirmed steps above a residual that is not noise are causes too; `remaining` states the rest.
   const bool part = answer.verdict == Verdict::kUnexplained && !answer.remaining.is_noise;
   if (!found.accepted.empty() && (named || part)) causes = Causes(found, 0).all(aliases_of(answer));
-  sort_by_evidence(causes);
   if (answer.instrument.empty()) return causes;
   if (named && !causes.empty())
     causes.push_back(instrument_cause(answer.instrument, causes.front().evidence));
