@@ -667,6 +667,13 @@ std::vector<std::string> Devices::output_budget() const {
   return lines;
 }
 
+bool Devices::corrections_have_arrived() const noexcept {
+  const auto& outputs = parts_->real_outputs;
+  return std::all_of(outputs.begin(), outputs.end(), [](const RealOutput& output) {
+    return output.device->has_arrived(output.number);
+  });
+}
+
 void Devices::say_held() const {
   for (const RealOutput& output : parts_->real_outputs)
     if (output.device->held_at_end(output.number) > 0)

@@ -77,6 +77,8 @@ class Devices {
   std::vector<std::string> output_budget() const;
   /// Writes a message to standard error about the outputs that reached the end of their range.
   void say_held() const;
+  /// Returns false while a drive has not used the newest correction of its axis. Real-time safe.
+  bool corrections_have_arrived() const noexcept;
 
  private:
   struct Parts;

@@ -41,7 +41,8 @@ constexpr int kDone = 0, kBadInput = 1, kAnswerIsNo = 2;
 constexpr int kPriority = 80;  // as cyclictest is usually run, above the kernel's threaded interrupts (50)
 constexpr double kShareOfRangePerS = 0.1;
 constexpr int kMostTicksToEnd = 30'000;
-constexpr int kMostTicksStill = 1000;  // of outputs that refuse: one second
+constexpr int kMostTicksStill = 1000;     // of outputs that refuse: one second
+constexpr int kMostTicksOnTheWay = 1000;  // of the last zero to a drive that uses it at a SYNC
 
 std::atomic<bool> stop_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
@@ -237,6 +238,20 @@ std::unique_ptr<BoardKey> key_of_board(const std::string& store) {
   }
 }
 
+/// Sends the last zeros until each drive has used its zero: a drive takes an offset with a SYNC only, and a
+/// frame that waits for a busy CAN bus is lost with its sender.
+void wait_for_last_zeros(Service& service, Devices& devices) {
+  for (int tick = 0; !devices.corrections_have_arrived(); ++tick) {
+    if (tick == kMostTicksOnTheWay) {
+      std::fputs("vernierd: a drive did not confirm the offset zero: it may still have a correction\n",
+                 stderr);
+      return;
+    }
+    devices.advance();
+    service.tick();
+  }
+}
+
 /// A daemon that ends leaves no correction in the drives: it is ramped out first, within the limits of the
 /// axes.
 void take_correction_out(Service& service, Devices& devices) {
@@ -260,6 +275,7 @@ void take_correction_out(Service& service, Devices& devices) {
     std::fputs("vernierd: an output refuses every value: its correction was not removed\n", stderr);
     return;
   }
+  wait_for_last_zeros(service, devices);
 }
 
 std::vector<CalibrationPoint> measured_points(const Arguments& arguments, const AxisEntry& axis,

@@ -25,6 +25,12 @@ class OutputDevice : public CorrectionWriter {
   virtual std::string trial() const = 0;
   /// Returns the number of writes whose correction was beyond the range of the device.
   virtual std::uint64_t held_at_end(std::uint32_t axis) const noexcept = 0;
+  /// Returns false while the newest correction is on its way to a drive that has not used it yet. Real-time
+  /// safe.
+  virtual bool has_arrived(std::uint32_t axis) const noexcept {
+    (void)axis;
+    return true;
+  }
   virtual const AnalogueScale& scale(std::uint32_t axis) const noexcept = 0;
   /// Returns a line of statistics, which the daemon prints for the device at its end; an empty text: no line
   /// is printed. Not real-time safe.

@@ -216,6 +216,27 @@ TEST(Canopen, EachSyncTakesTheOffsetOfTheTickBeforeToTheCount) {
   EXPECT_EQ(rig.drive.counts().losses, 0u);
 }
 
+TEST(Canopen, NewestOffsetIsInTheDriveAfterASyncOnly) {
+  Rig rig;
+  rig.correct();
+  EXPECT_TRUE(rig.drive.has_newest_offset());
+  rig.target = 0;
+  int ticks = 0;
+  while (rig.drive.offset() != 0 && ticks < 1000) {
+    rig.tick(), ++ticks;
+    EXPECT_FALSE(rig.drive.has_newest_offset()) << "tick " << ticks << " sends another one";
+  }
+  ASSERT_EQ(rig.drive.offset(), 0);
+  rig.sync = false;
+  rig.run(5);
+  EXPECT_FALSE(rig.drive.has_newest_offset()) << "no SYNC has come since";
+  EXPECT_NE(rig.applied(), 0);
+  rig.sync = true;
+  rig.run(2);
+  EXPECT_TRUE(rig.drive.has_newest_offset());
+  EXPECT_EQ(rig.applied(), 0);
+}
+
 TEST(CanopenLoss, OfSyncKeepsTheOffsetAndRampsOutWhenSyncReturns) {
   Rig rig;
   rig.correct();

@@ -93,6 +93,8 @@ class CanopenDrive {
 
   /// Returns the offset that the drive has, or will have with the next SYNC. Real-time safe.
   std::int32_t offset() const noexcept { return sent_; }
+  /// True if the drive used the newest offset at a SYNC. Real-time safe.
+  bool has_newest_offset() const noexcept { return on_bus_ == sent_ && applied_ == sent_; }
   /// True if the last change of the offset was sent to the drive without any limitation. Real-time
   /// safe.
   bool follows() const noexcept { return follows_; }

@@ -48,6 +48,7 @@ class CanopenOutput : public OutputDevice {
   HalFault read_back(std::uint32_t axis, AxisTravel& correction) noexcept override;
   std::string attempt(std::uint32_t axis) override;
   std::string trial() const override;
+  bool has_arrived(std::uint32_t) const noexcept override { return drive_.has_newest_offset(); }
   std::uint64_t held_at_end(std::uint32_t) const noexcept override { return held_at_end_; }
   const AnalogueScale& scale(std::uint32_t) const noexcept override { return converter_.scale(); }
   std::string account() const override;

@@ -106,17 +106,17 @@ Heights heights_of(const model::Machine& machine, const Measurement& m, const mo
 
 }  // namespace
 
-bool bow_is_read(const model::Machine& machine, const Measurement& m, const std::string& plane,
+bool bow_is_read(const model::Machine& machine, const Measurement& rows, const std::string& plane,
                  const Vector3d& normal) {
-  const model::ChainRows chain(machine, m.states);
+  const model::ChainRows chain(machine, rows.states);
   std::vector<Vector3d> touched;
-  for (std::size_t row = 0; row < m.rows(); ++row) {
-    const std::size_t thing = m.thing_of(row);
-    if (m.check[row] == 0 && thing != model::kNoThing && m.things[thing].label == plane)
+  for (std::size_t row = 0; row < rows.rows(); ++row) {
+    const std::size_t thing = rows.thing_of(row);
+    if (rows.check[row] == 0 && thing != model::kNoThing && rows.things[thing].label == plane)
       touched.push_back(chain.pose(row).origin);
   }
   if (touched.empty()) return true;
-  const Heights heights = heights_of(machine, m, chain, PlaneFrame(touched, normal));
+  const Heights heights = heights_of(machine, rows, chain, PlaneFrame(touched, normal));
   if (heights.bow.empty()) return false;
   const auto n = static_cast<Index>(heights.bow.size());
   MatrixXd bow(n, 3), nuisance(n, static_cast<Index>(heights.nuisance.front().size()));
