@@ -669,9 +669,8 @@ std::vector<std::string> Devices::output_budget() const {
 
 bool Devices::corrections_have_arrived() const noexcept {
   const auto& outputs = parts_->real_outputs;
-  return std::all_of(outputs.begin(), outputs.end(), [](const RealOutput& output) {
-    return output.device->has_arrived(output.number);
-  });
+  return std::all_of(outputs.begin(), outputs.end(),
+                     [](const RealOutput& output) { return output.device->has_arrived(output.number); });
 }
 
 void Devices::say_held() const {
