@@ -375,8 +375,8 @@ class Diagnoser {
       if (seen.insert(pool_.candidate(item).label).second) items.push_back(item);
     };
     if (!accepted_.empty()) take(accepted_.front());
-    for (const Alternatives& one : alternatives_)
-      for (const std::size_t item : one.within(options_.thresholds.acceptance.distance))
+    for (std::size_t i = 0; i < alternatives_.size(); ++i)
+      for (const std::size_t item : not_rejected(alternatives_, i, options_.thresholds.acceptance.distance))
         if (items.size() < options_.shown) take(item);
     for (const std::size_t item : accepted_) take(item);
     for (const auto& [score, item] : rest) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "tools/diagnose/finder.h"
+#include "tools/diagnose/refit.h"
 #include "tools/diagnose/types.h"
 
 namespace vernier::diagnose {
@@ -24,20 +24,9 @@ struct Findings {
   const std::vector<std::size_t>& listed;         // indices of the effects in the order of
                                                   // Diagnosis::candidates
 
-  /// Returns the alternatives to an accepted effect that the data do not reject. An alternative to the first
-  /// effect is none to a later one: it would be counted twice.
+  /// Alternatives to an accepted effect that the data do not reject.
   std::vector<std::size_t> close(std::size_t position) const {
-    const double distance = options.thresholds.acceptance.distance;
-    // A rare form of the same columns is at the limit itself, and the fits beside other effects move it.
-    constexpr double kMovedByFits = 0.1;  // BIC
-    std::vector<std::size_t> items =
-        alternatives[position].within(position == 0 ? distance : distance - kMovedByFits);
-    if (position == 0) return items;
-    const std::vector<std::size_t> of_first = alternatives.front().within(distance);
-    std::erase_if(items, [&](std::size_t item) {
-      return std::find(of_first.begin(), of_first.end(), item) != of_first.end();
-    });
-    return items;
+    return not_rejected(alternatives, position, options.thresholds.acceptance.distance);
   }
 };
 

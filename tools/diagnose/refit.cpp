@@ -51,7 +51,9 @@ Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::s
     set[position] = one.item;
     const fit::FitResult fit = fits.of(set);
     if (!fit.converged) return false;
-    if (!response && finder.pool().is_richer(one.item, effect) &&
+    const bool less_likely =
+        finder.pool().is_richer(one.item, effect) || finder.pool().is_rarer(one.item, effect);
+    if (!response && less_likely &&
         share_apart(finder.evidence().measurement(), fits, fit) < limits.pool.held_share)
       return true;
     one.distance = finder.criterion_of_fit(set, fit.chi_square / fits.accepted.chi_square) - own;
@@ -63,6 +65,17 @@ Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::s
   std::stable_sort(found.other.begin(), found.other.end(),
                    [](const Alternative& a, const Alternative& b) { return a.distance < b.distance; });
   return found;
+}
+
+std::vector<std::size_t> not_rejected(const std::vector<Alternatives>& alternatives, std::size_t position,
+                                      double distance) {
+  std::vector<std::size_t> items = alternatives[position].within(distance);
+  if (position == 0) return items;
+  const std::vector<std::size_t> of_first = alternatives.front().within(distance);
+  std::erase_if(items, [&](std::size_t item) {
+    return std::find(of_first.begin(), of_first.end(), item) != of_first.end();
+  });
+  return items;
 }
 
 }  // namespace vernier::diagnose

@@ -33,13 +33,20 @@ bool fits_and_predicts_better(const model::Measurement& rows, const Eigen::Vecto
 /// the alternative in place of this effect. The search estimates the distances linearly; the
 /// distances of the full fits replace these estimates. Three kinds of alternatives have the distance of the
 /// estimate: alternatives beyond `distance_of_fits`, alternatives after the first `most`, and alternatives
-/// whose fit does not converge. A form of an effect with more unknowns is not an alternative if its fit
-/// predicts the same readings as the accepted form. A thermal response of another structure
+/// whose fit does not converge. A form of an effect with more unknowns, and a rare effect, are not
+/// alternatives if the fit predicts the same readings as the accepted effect: then only its frequency
+/// decides. A thermal response of another structure
 /// (`thermal-response`) is fitted at any distance. If a thermal response fits and predicts better than the
 /// accepted response, its distance (difference in BIC) is at most 0. `accepted`: indices of the accepted
 /// effects; `position`: position of the effect in this list. A negative distance means that the fit prefers
 /// the alternative. Computing time: one fit for each alternative.
 Alternatives alternatives_by_fits(const Finder& finder, const std::vector<std::size_t>& accepted,
                                   std::size_t position, std::size_t most, const DecisionFits& fits);
+
+/// Returns the alternatives to the accepted effect `position` that the data do not reject: their distance in
+/// BIC is below `distance`. An alternative to the first effect is none to a later one: it would be counted
+/// twice. `alternatives`: alternatives to each accepted effect, in the order of the stepwise model.
+std::vector<std::size_t> not_rejected(const std::vector<Alternatives>& alternatives, std::size_t position,
+                                      double distance);
 
 }  // namespace vernier::diagnose

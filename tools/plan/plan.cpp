@@ -18,8 +18,6 @@
 namespace vernier::plan {
 namespace {
 
-/// The distance that a diagnosis requires from an alternative before it gives a name with confidence.
-constexpr double kLead = 6;
 /// One reading must not decide.
 constexpr std::size_t kLeastPoints = 4;
 /// So many points may always be spent on the other effects that explain the rows.

@@ -191,12 +191,21 @@ std::string Explanation::sentence() const {
   std::string beyond;
   for (const std::string& name : plan_.not_settable)
     beyond += fmt::format(" The column {} is logged, but a plan cannot set its value.", name);
-  if (plan_.told_already && plan_.rows.rows() == 0)
+  if (plan_.told_already && plan_.rows.rows() == 0) {
+    const std::string &better = plan_.lead_of_a > 0 ? a : b, &other = plan_.lead_of_a > 0 ? b : a;
+    const double lead = std::abs(plan_.lead_of_a);
+    if (lead < kLead)
+      return fmt::format(
+          "The rows measured so far could distinguish the two effects (non-centrality {:.3g}, required "
+          "{:.3g}), but {} explains these rows better than {} by only {:.3g}. Measure the same rows again: "
+          "if "
+          "the difference does not grow, neither effect is the whole cause.",
+          worse.now, worse.needed, better, other, lead);
     return fmt::format(
         "The rows measured so far already distinguish the two effects: {} explains the rows better than {} "
         "by {:.3g} (non-centrality {:.3g}, required {:.3g}).",
-        plan_.lead_of_a > 0 ? a : b, plan_.lead_of_a > 0 ? b : a, std::abs(plan_.lead_of_a), worse.now,
-        worse.needed);
+        better, other, lead, worse.now, worse.needed);
+  }
   if (!plan_.separable)
     return fmt::format(
         "{} and {} cannot be separated by {} points of any admissible pose, approach direction, speed, time "

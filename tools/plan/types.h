@@ -26,6 +26,9 @@ struct PlanOptions {
   std::size_t offers = 1000;              // number of rows from which the plan is selected
 };
 
+/// Difference of the BIC that a diagnosis requires from an alternative before it names a cause.
+inline constexpr double kLead = 6;
+
 /// Separation of two effects in one direction: the chi^2 of the best refit of the alternative if `truth` is
 /// true, in units of u^2.
 struct Separation {

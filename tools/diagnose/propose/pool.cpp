@@ -108,16 +108,23 @@ const effects::Candidate& Pool::candidate(std::size_t i) const {
   return scanner_.candidates()[items_[i].scored.candidate].candidate;
 }
 
+bool Pool::is_rare(const effects::Choice& choice) {
+  // A jump between runs can follow any slow drift. It is named only if no continuous effect fits
+  // as well. A term without a name is rarer than the causes with a name.
+  return choice.effect->rare || choice.form->rare || !choice.runs.empty() ||
+         choice.effect == &effects::custom_effect();
+}
+
+bool Pool::is_rarer(std::size_t rare, std::size_t usual) const {
+  return is_rare(candidate(rare).choice) && !is_rare(candidate(usual).choice);
+}
+
 double Pool::penalty(const Scored& scored) const {
   const ScannedCandidate& item = scanner_.candidates()[scored.candidate];
   double cost = 2 * std::log(static_cast<double>(scanner_.candidates().size())) +
                 rank_of(item.candidate, extent_.step_of_place) + item.penalty;
-  // A jump between runs can follow any slow drift. It is named only if no continuous effect fits
-  // as well.
   const effects::Choice& choice = item.candidate.choice;
-  // A term without a name is rarer than the causes with a name.
-  const bool nameless = choice.effect == &effects::custom_effect();
-  if (choice.effect->rare || choice.form->rare || !choice.runs.empty() || nameless) cost += thresholds_.rare;
+  if (is_rare(choice)) cost += thresholds_.rare;
   if (carries_not(axes_, choice)) cost += 2 * thresholds_.rare;
   // A scanned unknown counts as many tests as the grid has distinct values, if that exceeds the
   // penalty of a coefficient.

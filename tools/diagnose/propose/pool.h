@@ -86,6 +86,9 @@ class Pool {
   /// True if the candidate `general` has more unknowns than `special` and depends on all quantities on which
   /// `special` depends.
   bool is_richer(std::size_t general, std::size_t special) const;
+  /// True if the catalogue marks only the candidate `rare` as rare, or if only this candidate is a jump
+  /// between runs or a term without a name.
+  bool is_rarer(std::size_t rare, std::size_t usual) const;
   /// True if the candidate `general` is richer than `special` and its columns contain the columns of
   /// `special` (all but 2 % of their squares).
   bool contains(std::size_t general, std::size_t special) const;
@@ -98,6 +101,7 @@ class Pool {
   double penalty(const Scored& scored) const;
 
  private:
+  static bool is_rare(const effects::Choice& choice);
   std::string place_key(const Scored& scored) const;
 
   const Evidence& evidence_;
