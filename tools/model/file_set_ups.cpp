@@ -44,6 +44,28 @@ bool share_a_word(const FileUse& a, const FileUse& b) {
                      [&](const auto& word) { return b.words.contains(word); });
 }
 
+/// Numbers of the files that keep the plain BaseShift: a file and all that share words with it. Only the
+/// plain BaseShift can serve several files. The first such group has it, or the first file if no words are
+/// shared.
+std::set<std::size_t> files_on_plain(const std::vector<FileUse>& uses) {
+  std::set<std::size_t> of_first;
+  for (std::size_t start = 0; start < uses.size(); ++start) {
+    if (!uses[start].needs_set_up || !uses[start].on_plain) continue;
+    std::set<std::size_t> group{start};
+    for (std::size_t size = 0; size != group.size();) {
+      size = group.size();
+      for (std::size_t file = 0; file < uses.size(); ++file)
+        if (uses[file].needs_set_up && uses[file].on_plain &&
+            std::any_of(group.begin(), group.end(),
+                        [&](std::size_t other) { return share_a_word(uses[file], uses[other]); }))
+          group.insert(file);
+    }
+    if (group.size() > 1) return group;
+    if (of_first.empty()) of_first = group;
+  }
+  return of_first;
+}
+
 /// The element of the plain BaseShift.
 pugi::xml_node plain_element(const pugi::xml_node& document) {
   return document.find_node([](const pugi::xml_node& node) {
@@ -71,28 +93,22 @@ CompletedText with_set_ups_of_files(const std::string& text, const Machine& mach
                                   [](const auto& s) { return !s.run; });
   if (rows.files.size() < 2 || plain == machine.base_shifts.end() || plain->hidden) return result;
   const std::vector<FileUse> uses = uses_of(machine, rows);
+  const std::set<std::size_t> plain_files = files_on_plain(uses);
   std::set<std::string> names;
   std::string elements;
-  const FileUse* first = nullptr;
-  std::vector<FileUse> before;
   for (std::size_t file = 0; file < uses.size(); ++file) {
     const FileUse& use = uses[file];
     if (!use.needs_set_up || !use.on_plain) continue;
     std::string name = set_up_of_file(rows.files[file]);
     if (names.contains(name)) name = set_up_of_file(rows.files[file], true);
-    const bool joined = std::any_of(before.begin(), before.end(),
-                                    [&](const FileUse& other) { return share_a_word(use, other); });
-    before.push_back(use);
-    // The first file keeps the plain BaseShift: a survey of one file is as before.
-    if (first == nullptr) {
-      first = &use;
+    if (plain_files.contains(file)) {
       names.insert(name);
       continue;
     }
-    if (joined) continue;
+    const std::size_t first = *plain_files.begin();
     if (use.stated) {
       // Words without a BaseShift mean other positions only beside the words of an earlier file.
-      if (!first->stated) continue;
+      if (!uses[first].stated) continue;
       for (const std::string& word : use.words) {
         if (!names.insert(word).second) continue;
         elements += element_of(word, *plain) + "\n      ";
@@ -106,7 +122,7 @@ CompletedText with_set_ups_of_files(const std::string& text, const Machine& mach
     result.notes.push_back(
         fmt::format("{} has its own set-up BaseShift[{}]; if the instrument had the same position as for {}, "
                     "give the rows of both files one word in a column \"setup\"",
-                    rows.files[file], name, rows.files[static_cast<std::size_t>(first - uses.data())]));
+                    rows.files[file], name, rows.files[first]));
   }
   if (elements.empty()) return result;
   pugi::xml_document document;

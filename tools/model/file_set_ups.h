@@ -14,9 +14,11 @@ struct CompletedText {
   std::vector<std::string> notes;  // one note for each addition
 };
 
-/// Adds one BaseShift for each measurement file after the first. The name in `setup` is the file name without
-/// its ending; if two files have the same name, the folder is included. The BaseShifts are necessary because
-/// the instrument has another position for each file. No BaseShift is added for a measurement file that
+/// Adds one BaseShift for each measurement file after the first. If files share words, the first files that
+/// share words keep the BaseShift without `setup`, and all other files get their own. The name in `setup` is
+/// the file name without its ending; if two files have the same name, the folder is included. The BaseShifts
+/// are necessary because the instrument has another position for each file. No BaseShift is added for a
+/// measurement file that
 /// - has a column `setup`, or has a run label that an earlier file has (both files then have one set-up),
 /// - has only rows with role check, or only readings that need no set-up,
 /// - has a BaseShift in the machine file.

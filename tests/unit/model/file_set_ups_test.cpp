@@ -51,6 +51,31 @@ TEST(FileSetUps, SecondFileHasItsOwnBaseShiftFromThePlainOne) {
   EXPECT_EQ(set_ups(files, own.text).text, own.text);
 }
 
+/// The order of the files on the command line changes no set-up: only the plain BaseShift can serve several
+/// files, so that the files with equal run labels have it, also after a file without runs.
+TEST(FileSetUps, FilesWithEqualRunsShareThePlainBaseShiftInEachOrder) {
+  const File tracker = {"tracker.csv", "X[mm],x[mm],y[mm],z[mm]\n1,1,1,1\n2,2,2,2\n"};
+  const File laser_x = {"laser_x.csv", "X[mm],x[mm],run\n1,1,1\n2,2,2\n"};
+  const File laser_y = {"laser_y.csv", "X[mm],y[mm],run\n1,1,1\n2,2,2\n"};
+  for (const std::vector<File>& files : {std::vector<File>{tracker, laser_x, laser_y},
+                                         {laser_x, tracker, laser_y},
+                                         {laser_x, laser_y, tracker}}) {
+    const CompletedText own = set_ups(files);
+    ASSERT_EQ(own.notes.size(), 1U) << "with " << files[0].name << " first";
+    EXPECT_EQ(own.notes[0].rfind("tracker.csv has its own set-up BaseShift[tracker]", 0), 0U) << own.notes[0];
+    const Machine machine = parse_machine(own.text, "m.xml");
+    ASSERT_EQ(machine.base_shifts.size(), 2U);
+    const Measurement rows = read(files, machine);
+    for (std::size_t row = 0; row < rows.rows(); ++row) {
+      const std::string& word = rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, row)];
+      const auto shift = base_shift_of(machine, word);
+      ASSERT_TRUE(shift);
+      EXPECT_EQ(machine.base_shifts[*shift].run.value_or("") == "tracker",
+                rows.files[rows.file[row]] == "tracker.csv");
+    }
+  }
+}
+
 TEST(FileSetUps, TwoFilesOfOneNameAreNamedByTheirFolders) {
   const std::vector<File> files = {{"a/meas.csv", "X[mm],x[mm]\n1,1\n"},
                                    {"b/meas.csv", "X[mm],x[mm]\n1,1\n"}};
