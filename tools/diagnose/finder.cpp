@@ -907,6 +907,10 @@ Alternatives Finder::alternatives_to(std::size_t item) const {
   return found;
 }
 
+double Finder::share_left(std::size_t item) const {
+  return evaluate({item}).chi_square / evaluate({}).chi_square;
+}
+
 double Finder::criterion_of_fit(const std::vector<std::size_t>& items, double ratio) const {
   const Selection linear = evaluate(items);
   return linear.criterion - likelihood_part(problem_, linear.chi_square) +

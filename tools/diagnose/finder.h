@@ -105,6 +105,8 @@ class Finder {
   /// Returns the factor by which chi^2 increases if one accepted effect is removed and the other effects are
   /// fitted again.
   double growth_without(std::size_t item) const;
+  /// Returns the fraction of chi^2 that remains with one candidate alone in the model, by a linear estimate.
+  double share_left(std::size_t item) const;
   /// True if the residual of the model with the accepted effects is noise, by a linear estimate.
   bool linear_down_to_noise() const;
 

@@ -65,7 +65,7 @@ class Decision {
     std::string (Decision::*explains)();
     Verdict verdict;
   };
-  static const std::array<Rule, 19> kRules;
+  static const std::array<Rule, 20> kRules;
 
   // The rules, in the order of the table.
 
@@ -162,10 +162,26 @@ class Decision {
     return text;
   }
 
+  /// An effect of another size than the residual beside it, such as an unknown tool of a robot: the search is
+  /// linear, and what it found beside this effect, or doubts about it, is the part that is not linear. The
+  /// fit of this effect alone is the evidence.
+  std::string one_effect_is_nearly_all() {
+    const double before = answer_.ladder[0].chi_square_per_freedom,
+                 after = answer_.ladder[1].chi_square_per_freedom;
+    const std::size_t cause = accepted_.front();
+    if (after > limits_.nearly_all * before ||
+        after > limits_.of_foreseen * finder_.share_left(cause) * before || !found_.close(0).empty())
+      return {};
+    for (std::size_t i = 2; i < answer_.ladder.size(); ++i) answer_.ladder[i].certain = false;
+    compare_with_alternatives();
+    if (is_noise_) return said_of_cause();
+    return said_of_cause() +
+           " It is so much larger than the remaining residual that other effects can be searched only beside "
+           "it: add this effect, and diagnose again (the command improve does this).";
+  }
+
   std::string not_down_to_noise() {
-    name_confusions();
-    if (const auto& other = found_.alternatives.front().other; !other.empty())
-      answer_.runner_up_distance = other.front().distance;
+    compare_with_alternatives();
     if (is_noise_ || is_explained_on_check()) return {};
     return (is_of_the_size_of_noise()
                 ? "Effects of the catalogue reduce the residual to the size of the noise, but the residual "
@@ -318,12 +334,16 @@ class Decision {
            rest();
   }
 
-  std::string one_cause() {
+  /// The sentence about the first effect, the next best cause and the certain steps beside it.
+  std::string said_of_cause() const {
     const std::vector<Alternative>& other = found_.alternatives.front().other;
-    std::string text =
-        cause_in_words(answer_.candidates.front(),
-                       other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
-                       other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size());
+    return cause_in_words(answer_.candidates.front(),
+                          other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
+                          other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size());
+  }
+
+  std::string one_cause() {
+    std::string text = said_of_cause();
     if (!is_noise_) text += " The remaining residual is not noise." + where_left(answer_.left);
     return text + rest();
   }
@@ -536,6 +556,12 @@ class Decision {
     return before && after && *after * *after < (1 - limits_.explained_on_check) * *before * *before;
   }
 
+  void compare_with_alternatives() {
+    name_confusions();
+    if (const auto& other = found_.alternatives.front().other; !other.empty())
+      answer_.runner_up_distance = other.front().distance;
+  }
+
   /// Sets which listed candidates cannot be distinguished from the cause.
   void name_confusions() {
     const Alternatives& alternatives = found_.alternatives.front();
@@ -576,7 +602,7 @@ class Decision {
 
 // The order is the precedence: the instrument before the machine, no name before a doubtful name,
 // several names before one.
-const std::array<Decision::Rule, 19> Decision::kRules = {{
+const std::array<Decision::Rule, 20> Decision::kRules = {{
     {&Decision::time_base, Verdict::kInstrument},
     {&Decision::outliers, Verdict::kInstrument},
     {&Decision::step_beside_a_name, Verdict::kUnexplained},
@@ -586,6 +612,7 @@ const std::array<Decision::Rule, 19> Decision::kRules = {{
     {&Decision::nothing_to_add, Verdict::kConsistent},
     {&Decision::nothing_explains, Verdict::kUnexplained},
     {&Decision::effect_of_instrument, Verdict::kInstrument},
+    {&Decision::one_effect_is_nearly_all, Verdict::kMissingEffect},
     {&Decision::not_down_to_noise, Verdict::kUnexplained},
     {&Decision::pieces, Verdict::kUnexplained},
     {&Decision::drift_beyond_u, Verdict::kUnexplained},

@@ -59,6 +59,16 @@ TEST(Improve, GoesPastAnOpenCauseToStepsThatAreCertainWithEachCause) {
   EXPECT_THAT(result.said, HasSubstr("could distinguish the two effects"));
 }
 
+/// The tool is unknown by 100 mm, beside which the search for other effects is not linear: it is added first.
+/// The search beside it finds both joints that yield to gravity.
+TEST(Improve, UnknownToolOfARobotIsAddedBeforeTheSearchForTheRest) {
+  const Improved result = improve("robot_unknown_tool");
+  EXPECT_THAT(result.effects(), ElementsAre("offset", "joint-compliance", "joint-compliance"));
+  EXPECT_EQ(result.json["verdict"], "consistent");
+  EXPECT_THAT(result.said, HasSubstr("other effects can be searched only beside it"));
+  EXPECT_THAT(result.said, HasSubstr("joint joint_a3: compliance"));
+}
+
 /// Creep, which the catalogue marks as rare, is the same function of these positions as lead error and
 /// backlash together. The usual causes are named, first and later in the stepwise model.
 TEST(Improve, RareEffectThatPredictsTheSameReadingsOpensNoCause) {

@@ -191,9 +191,9 @@ std::vector<std::size_t> readings_of(const model::Measurement& m) {
   return readings;
 }
 
-/// The remedy if a free tool point explains the readings that the fit refuses; otherwise empty.
+/// The remedy if a free tool point explains most of the residual of a fit; otherwise empty.
 std::string unknown_tool(const model::Machine& machine, const model::Measurement& m, fit::FitOptions options,
-                         const fit::FitResult& refused) {
+                         const fit::FitResult& held) {
   std::vector<std::string> names;
   for (const model::Static& one : machine.statics)
     if (one.hidden && (one.name == "TPX" || one.name == "TPY" || one.name == "TPZ"))
@@ -201,11 +201,11 @@ std::string unknown_tool(const model::Machine& machine, const model::Measurement
   if (names.empty()) return {};
   options.progress = {};
   const fit::FitResult with_tool = fit::fit(fit::with_freedom(machine, names, {}), m, options);
-  if (!with_tool.absurd.empty() || !with_tool.after.rms_um || !refused.after.rms_um) return {};
-  constexpr double kFarBetter = 0.2;  // of the residual of the refused fit
-  if (*with_tool.after.rms_um > kFarBetter * *refused.after.rms_um) return {};
+  if (!with_tool.absurd.empty() || !with_tool.after.rms_um || !held.after.rms_um) return {};
+  constexpr double kFarBetter = 0.2;  // of the residual with the given tool point
+  if (*with_tool.after.rms_um > kFarBetter * *held.after.rms_um) return {};
   return fmt::format(
-      ". The tool point of the machine file is probably not that of the measurement: with a free tool point "
+      "The tool point of the machine file is probably not that of the measurement: with a free tool point "
       "the "
       "residual is {:.3g} um. State the tool (vernier new --tool), or fit it: --free {}",
       *with_tool.after.rms_um, fmt::join(names, ","));
@@ -232,9 +232,13 @@ void run_fit(const FitArguments& arguments) {
                     fmt::format("iteration {}, weighted sum of squares {:.6g}", iteration, cost));
   };
   const fit::FitResult result = fit::fit(machine, m, options);
+  const bool missing = result.machine.fitted &&
+                       std::ranges::any_of(result.machine.fitted->findings,
+                                           [](const auto& one) { return one.code == "something-missing"; });
+  const std::string tool =
+      missing || !result.absurd.empty() ? unknown_tool(machine, m, options, result) : std::string();
   if (!result.absurd.empty())
-    throw text::LimitNotMet(result.absurd + "; nothing is written" +
-                            unknown_tool(machine, m, options, result));
+    throw text::LimitNotMet(result.absurd + "; nothing is written" + (tool.empty() ? "" : ". ") + tool);
   const nlohmann::ordered_json json = results::fit_json(result, m);
   if (!arguments.output.empty())
     text::write_file(
@@ -244,6 +248,7 @@ void run_fit(const FitArguments& arguments) {
     text::write_file(arguments.residuals, results::residual_csv(m, result.residual));
   write_json(arguments.json, json);
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
+  if (!tool.empty()) fmt::print(stderr, "note: {}\n", tool);
   for (const fit::OtherSetUp& one : fit::files_set_up_elsewhere(result.machine, m))
     fmt::print(stderr, "note: {}; to fit this set-up, give at least three rows of the file the role fit\n",
                one.sentence());

@@ -58,6 +58,19 @@ bool has_period(const effects::Candidate& candidate) {
   return !scanned.empty() && (*scanned.begin()).kind == effects::UnknownKind::kPeriod;
 }
 
+/// A gravity moment about a joint depends on the positions of all joints after it.
+bool depends_on_no_other_axis(const model::Machine& machine, const effects::Candidate& candidate) {
+  model::Machine scratch = machine;
+  effects::add_unknowns(scratch, candidate, {});
+  bool other = false;
+  for (const effects::CandidateTerm& term : candidate.terms)
+    model::walk(*model::parse_expression_for(scratch, term.text), [&](const model::Expr& node) {
+      other = other || (node.op == model::Op::kSymbol && node.symbol.kind == model::SymbolKind::kAxis &&
+                        node.symbol.index != *candidate.choice.axis);
+    });
+  return !other;
+}
+
 /// The extension of an axis bends the structure that carries it. A sag of a part that it carries,
 /// or of the other branch, has no load that changes with it.
 bool carries_not(const effects::AxisPlaces& axes, const effects::Choice& choice) {
@@ -250,7 +263,7 @@ bool Pool::same_columns(std::size_t a, std::size_t b) const {
 bool Pool::is_function_of_an_axis(std::size_t i) const {
   const effects::Candidate& one = candidate(i);
   return one.choice.axis && one.choice.place && one.terms.size() == 1 &&
-         drivers_of(evidence_.machine(), one).empty();
+         drivers_of(evidence_.machine(), one).empty() && depends_on_no_other_axis(evidence_.machine(), one);
 }
 
 double Pool::common_share(std::size_t item, std::size_t other) const {

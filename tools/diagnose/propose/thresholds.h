@@ -210,6 +210,10 @@ struct VerdictThresholds {
   /// confirmed effects must remove. The limit applies to a named cause whose remaining residual is not noise.
   /// The remaining residual then has a second, small cause.
   double explained_on_check = 1 - levels.small;
+  /// `nearly_all`: fraction of chi^2 that may remain beside one effect that explains nearly the whole error.
+  /// `of_foreseen`: the search was not linear if the fit of this effect leaves at most this fraction of the
+  /// share that the search foresaw.
+  double nearly_all = levels.negligible, of_foreseen = levels.most;
   /// Number of degrees of freedom above which a noise that is larger than the stated uncertainty is accepted.
   double enough_readings = levels.readings_of_structure;
   /// Significance level of candidates. A noise larger than the stated uncertainty is accepted only if no
