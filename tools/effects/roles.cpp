@@ -9,6 +9,7 @@
 
 #include "tools/effects/input_class.h"
 #include "tools/effects/insertion.h"
+#include "tools/effects/survey/missing_directions.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -109,8 +110,9 @@ void leave_out(model::Measurement& rows, const std::vector<ColumnRole>& roles) {
   });
 }
 
-std::vector<std::string> complete_columns(model::Measurement& rows) {
+std::vector<std::string> complete_columns(const model::Machine& machine, model::Measurement& rows) {
   std::vector<std::string> said;
+  for (const std::string& note : notes_of_missing_directions(machine, rows)) said.push_back(note + ".");
   std::vector<char> excluded(rows.rows(), 0);
   const auto complete = [&](model::CandidateInput& candidate) {
     const std::vector<Cells> files = cells_of(candidate, rows);

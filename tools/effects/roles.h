@@ -34,7 +34,8 @@ double mean_of_cells(const model::CandidateInput& candidate);
 /// rows. In the rows of a file without the column, the column has the reference of an input
 /// (usual_reference()), as an input that a file does not record. Rows with an empty cell in a file that has
 /// the column are excluded; a column with more than a fifth of its cells empty in a file is not used instead.
-/// Returns one sentence for each change.
-std::vector<std::string> complete_columns(model::Measurement& rows);
+/// Returns one sentence for each change, and for each file without approach directions that another file has
+/// (notes_of_missing_directions). `machine`: the machine of `rows`.
+std::vector<std::string> complete_columns(const model::Machine& machine, model::Measurement& rows);
 
 }  // namespace vernier::effects

@@ -73,7 +73,7 @@ ResultOfPython diagnose_of_python(const MachineOfPython& machine, const Measurem
   ResultOfPython result;
   model::Measurement m = model::read_measurement(measurements.paths, machine.machine);
   const std::vector<fit::FileNoise> noise = fit::estimate_file_noise(machine.machine, m);
-  const std::vector<std::string> column_sentences = effects::complete_columns(m);
+  const std::vector<std::string> column_sentences = effects::complete_columns(machine.machine, m);
   diagnose::DiagnoseOptions options;
   options.effects = effects::effect_catalogue({});
   options.most_effects = most;

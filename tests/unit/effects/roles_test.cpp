@@ -84,7 +84,7 @@ TEST_F(Roles, EachUndeclaredColumnGetsAValueInEveryRow) {
       "X[mm],x[mm],T[degC],few\n0,0,22,\n100,100,,\n200,200,23,\n300,300,24,1\n400,400,25,\n500,500,26,\n",
       "laser.csv", machine());
   append_measurement(rows, parse_measurement("X[mm],x[mm]\n0,0\n600,600\n", "tracker.csv", machine()), false);
-  const std::vector<std::string> said = complete_columns(rows);
+  const std::vector<std::string> said = complete_columns(machine(), rows);
   ASSERT_EQ(rows.candidates.size(), 1u);  // `few` is not used
   EXPECT_EQ(rows.candidates[0].name, "T");
   Column expected(7);
@@ -99,7 +99,18 @@ TEST_F(Roles, EachUndeclaredColumnGetsAValueInEveryRow) {
             std::string::npos)
       << said[1];
   EXPECT_NE(said[2].find("few is empty in 5 of 6 rows of laser.csv"), std::string::npos) << said[2];
-  EXPECT_TRUE(complete_columns(rows).empty()) << "nothing is left to do";
+  EXPECT_TRUE(complete_columns(machine(), rows).empty()) << "nothing is left to do";
+}
+
+TEST_F(Roles, FileWithoutTheDirectionsOfAnotherIsNamed) {
+  Measurement rows =
+      parse_measurement("X[mm],x[mm],dirX\n0,0,1\n100,100,1\n100,100,-1\n", "laser.csv", machine());
+  append_measurement(rows, parse_measurement("X[mm],x[mm]\n0,0\n600,600\n", "tracker.csv", machine()), false);
+  append_measurement(rows, parse_measurement("X[mm],x[mm]\n300,300\n300,300\n", "gauge.csv", machine()),
+                     false);
+  const std::vector<std::string> said = complete_columns(machine(), rows);
+  ASSERT_EQ(said.size(), 1u) << "the gauge was read at one position, which has no direction";
+  EXPECT_EQ(said[0].rfind("tracker.csv has no dirX, and another file has.", 0), 0u) << said[0];
 }
 
 TEST_F(Roles, WhatIsNoRoleOrNoColumnIsRefusedByName) {

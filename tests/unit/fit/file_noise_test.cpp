@@ -103,12 +103,12 @@ TEST(FileNoise, RepeatsInTheFileCountBeforeTheResidual) {
   EXPECT_NEAR(noise[0].u, kTracker_mm, 3 * noise[0].std);
 }
 
-// Five runs of a linear test: each run is a set-up of its own, with an offset of up to 20 um.
-TEST(FileNoise, RepeatsInOtherRunsCountBesideAnOffsetOfEachRun) {
-  std::mt19937_64 random(20261134);
+constexpr int kRuns = 5, kTargets = 11;
+
+/// Five runs of a linear test: each run is a set-up of its own, with an offset of up to 20 um.
+std::string runs(std::mt19937_64& random) {
   std::normal_distribution<double> noise(0, 0.5e-3), offset(0, 10e-3);
   std::string csv = "X[mm],dirX,run,Y[mm],Z[mm],x[mm]\n";
-  constexpr int kRuns = 5, kTargets = 11;
   for (int run = 0; run < kRuns; ++run) {
     const double shift = offset(random);
     for (const int sense : {1, -1})
@@ -116,8 +116,13 @@ TEST(FileNoise, RepeatsInOtherRunsCountBesideAnOffsetOfEachRun) {
         csv += fmt::format("{},{},{},250,-200,{:.6f}\n", 80 * i, sense, run,
                            80 * i + 7e-3 * sense + shift + noise(random));
   }
+  return csv;
+}
+
+TEST(FileNoise, RepeatsInOtherRunsCountBesideAnOffsetOfEachRun) {
+  std::mt19937_64 random(20261134);
   Measurement rows = parse_measurement(tracker(random, 20, 1, ",u[um]", ",6"), "tracker.csv", machine());
-  append_measurement(rows, parse_measurement(csv, "runs.csv", machine()));
+  append_measurement(rows, parse_measurement(runs(random), "runs.csv", machine()));
   const std::vector<FileNoise> estimate = estimate_file_noise(machine(), rows);
   ASSERT_EQ(estimate.size(), 1u);
   EXPECT_EQ(estimate[0].source, FileNoise::Source::kRepeatsInRuns) << estimate[0].sentence();
@@ -145,6 +150,27 @@ TEST(FileNoise, NothingIsEstimatedIfAllFilesOrNoFileStateU) {
   Measurement unstated = parse_measurement(tracker(random, 20), "tracker.csv", machine());
   EXPECT_TRUE(estimate_file_noise(machine(), unstated).empty());
   EXPECT_EQ(unstated.uncertainty.maxCoeff(), 0);
+}
+
+TEST(FileNoise, WithoutAnyUInstrumentsThatDifferHaveTheirOwnNoise) {
+  std::mt19937_64 random(20261135);
+  Measurement rows = parse_measurement(tracker(random, 40), "tracker.csv", machine());
+  append_measurement(rows, parse_measurement(runs(random), "runs.csv", machine()));
+  const std::vector<FileNoise> noise = estimate_file_noise(machine(), rows);
+  ASSERT_EQ(noise.size(), 2u);
+  EXPECT_EQ(noise[0].source, FileNoise::Source::kFit);
+  EXPECT_NEAR(noise[0].u, kTracker_mm, 0.5 * kTracker_mm) << "the model lacks the reversal of the laser";
+  EXPECT_NEAR(noise[1].u, 0.5e-3, 3 * noise[1].std) << "the reversal of 14 um is not noise";
+  EXPECT_NE(noise[1].sentence().find("the readings of other files have another scatter"), std::string::npos);
+}
+
+TEST(FileNoise, WithoutAnyUAlikeFilesKeepOneWeight) {
+  std::mt19937_64 random(20261136);
+  Measurement rows = parse_measurement(tracker(random, 30, 2), "tracker.csv", machine());
+  append_measurement(rows, parse_measurement(tracker(random, 30, 2), "again.csv", machine()));
+  append_measurement(rows, parse_measurement(tracker(random, 2), "short.csv", machine()));
+  EXPECT_TRUE(estimate_file_noise(machine(), rows).empty());
+  EXPECT_EQ(rows.uncertainty.maxCoeff(), 0);
 }
 
 TEST(FileNoise, CheckRowsAloneAreNoFileToEstimate) {

@@ -123,7 +123,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   Survey survey = read_survey(arguments.survey);
   std::vector<fit::FileNoise> noise = estimate_noise(survey);
   auto& [text, machine, m] = survey;
-  const std::vector<std::string> column_sentences = effects::complete_columns(m);
+  const std::vector<std::string> column_sentences = effects::complete_columns(machine, m);
   diagnose::DiagnoseOptions options;
   options.effects = effects::effect_catalogue(arguments.effects);
   options.most_effects = arguments.most;

@@ -133,7 +133,7 @@ class Improver {
         out_(human_stream(arguments.json)),
         survey_(read_survey(arguments.survey)),
         noise_(estimate_noise(survey_)),
-        column_sentences_(effects::complete_columns(survey_.rows)),
+        column_sentences_(effects::complete_columns(survey_.machine, survey_.rows)),
         text_(std::move(survey_.text)),
         machine_(std::move(survey_.machine)),
         first_(machine_),

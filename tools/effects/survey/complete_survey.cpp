@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "tools/effects/probe_offset.h"
+#include "tools/effects/survey/missing_directions.h"
 #include "tools/model/file_set_ups.h"
 #include "tools/model/machine_reader.h"
 
@@ -28,6 +29,8 @@ CompletedSurvey complete_survey(const std::string& text, const std::string& file
     survey.notes.insert(survey.notes.end(), own.notes.begin(), own.notes.end());
     read();
   }
+  const std::vector<std::string> directions = notes_of_missing_directions(survey.machine, survey.rows);
+  survey.notes.insert(survey.notes.end(), directions.begin(), directions.end());
   return survey;
 }
 

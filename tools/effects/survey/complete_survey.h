@@ -16,7 +16,7 @@ struct CompletedSurvey {
   std::string text;  // text of the machine file with the additions
   model::Machine machine;
   model::Measurement rows;
-  std::vector<std::string> notes;  // one note for each addition
+  std::vector<std::string> notes;  // one note for each addition, and for each file without directions
 };
 
 /// Function that changes the machine each time after its file is read; may be empty.

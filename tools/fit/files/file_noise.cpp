@@ -25,6 +25,9 @@ constexpr double kFarResidual = 3;
 /// Change of an estimate below which the iteration ends: a tenth of its own uncertainty with 1000 readings.
 constexpr double kSettledEstimate = 0.02;
 constexpr int kMostFits = 12;
+/// Ratio of the estimates of two files above which the files count as those of two instruments: one weight
+/// for both would give nine times the right weight to one of them.
+constexpr double kOtherInstrument = 3;
 /// Change of an estimate by which a machine with an additional effect counts as another model of the noise:
 /// the weights of the file then change by 20 %.
 constexpr double kOtherModel = 0.1;
@@ -36,14 +39,19 @@ bool is_of(const model::Measurement& rows, const FileNoise& noise, const model::
   return rows.file[one.row] == noise.file && model::is_rotation(one.kind) == noise.rotations;
 }
 
-/// The lengths and the rotations of each file that have no u; empty if no fit reading has u.
-std::vector<FileNoise> without_u(const model::Measurement& rows) {
+/// The lengths and the rotations of each file that have no u.
+struct WithoutU {
   std::vector<FileNoise> list;
-  bool any = false;
+  bool others_have = false;  // true: other fit readings have u
+};
+
+WithoutU without_u(const model::Measurement& rows) {
+  WithoutU found;
+  std::vector<FileNoise>& list = found.list;
   for (const model::Observation& one : rows.observations) {
     if (rows.check[one.row] != 0) continue;
     if (model::uncertainty_of(rows, one) > 0) {
-      any = true;
+      found.others_have = true;
       continue;
     }
     if (std::any_of(list.begin(), list.end(), [&](const FileNoise& n) { return is_of(rows, n, one); }))
@@ -54,7 +62,8 @@ std::vector<FileNoise> without_u(const model::Measurement& rows) {
     noise.rotations = model::is_rotation(one.kind);
     list.push_back(std::move(noise));
   }
-  return any ? list : std::vector<FileNoise>{};
+  for (FileNoise& noise : list) noise.beside_u = found.others_have;
+  return found;
 }
 
 void write_estimate(model::Measurement& rows, const FileNoise& noise) {
@@ -156,8 +165,9 @@ const char* unit_name_of(const FileNoise& noise) { return noise.rotations ? "arc
                                     column_name(noise))));
 }
 
-/// Estimates one file beside a fit. Returns the relative change.
-double estimate_file(const model::Measurement& rows, const FitResult& fit, FileNoise& noise) {
+/// Estimates one file beside a fit. Returns the relative change; nullopt if the degrees of freedom are too
+/// few.
+std::optional<double> estimate_file(const model::Measurement& rows, const FitResult& fit, FileNoise& noise) {
   const std::vector<double> left = residuals_of(rows, noise, fit.residual);
   noise.freedom = 0;
   const double per_touch = estimated_values_per_touch(rows);
@@ -168,26 +178,47 @@ double estimate_file(const model::Measurement& rows, const FitResult& fit, FileN
         fit.prediction_variance[static_cast<Eigen::Index>(i)] / (fit.variance_factor * noise.u * noise.u);
     noise.freedom += 1 - std::min(1.0, leverage) - (model::is_of_thing(one.kind) ? per_touch : 0);
   }
-  if (noise.freedom < kLeastFreedom) refuse_few_readings(noise, left.size());
+  if (noise.freedom < kLeastFreedom) return std::nullopt;
   const double before = noise.u;
   take_residuals(left, noise);
   return std::abs(noise.u / before - 1);
 }
 
-/// Repeats fits and estimates until the estimates do not change. `rows` and `list` have first values.
-void iterate_estimates(const model::Machine& machine, model::Measurement& rows,
-                       std::vector<FileNoise>& list) {
+/// Repeats fits and estimates until the estimates do not change. `rows` and `list` have first values. Returns
+/// an entry with too few degrees of freedom for an estimate, or null.
+const FileNoise* iterate_estimates(const model::Machine& machine, model::Measurement& rows,
+                                   std::vector<FileNoise>& list) {
   FitOptions independent;
   independent.noise = NoiseModel{};
   double change = 1;
   for (int count = 0; count < kMostFits && change > kSettledEstimate; ++count) {
     const FitResult result = fit(machine, rows, independent);
     change = 0;
-    for (FileNoise& noise : list)
-      if (!noise.from_repeats()) change = std::max(change, estimate_file(rows, result, noise));
+    for (FileNoise& noise : list) {
+      if (noise.from_repeats()) continue;
+      const std::optional<double> own = estimate_file(rows, result, noise);
+      if (!own) return &noise;
+      change = std::max(change, *own);
+    }
     for (const FileNoise& noise : list) write_estimate(rows, noise);
   }
   for (FileNoise& noise : list) noise.open = !noise.from_repeats() && change > kSettledEstimate;
+  return nullptr;
+}
+
+/// Number of fit readings of a file.
+std::size_t readings_of(const model::Measurement& rows, const FileNoise& noise) {
+  return static_cast<std::size_t>(std::count_if(
+      rows.observations.begin(), rows.observations.end(),
+      [&](const model::Observation& one) { return rows.check[one.row] == 0 && is_of(rows, noise, one); }));
+}
+
+/// True if the estimates are those of different instruments.
+bool differ_clearly(const std::vector<FileNoise>& list) {
+  for (const FileNoise& a : list)
+    for (const FileNoise& b : list)
+      if (a.rotations == b.rotations && a.u > kOtherInstrument * b.u) return true;
+  return false;
 }
 
 bool all_from_repeats(const std::vector<FileNoise>& list) {
@@ -204,28 +235,36 @@ std::string FileNoise::sentence() const {
       "the residual of the file with the given machine, which contains the errors of the machine"};
   const double factor = rotations ? maths::kArcsecPerDeg : maths::kUmPerMm;
   return fmt::format(
-      "{}: the {} of this file have no {}, and other readings have one. The estimate {} = {:.3g} {} +- "
-      "{:.2g} is "
-      "used{}, from {} ({:.0f} degrees of freedom). If you know the standard uncertainty, state it in a "
+      "{}: the {} of this file have no {}, and {}. The estimate {} = {:.3g} {} +- {:.2g} is used{}, from {} "
+      "({:.0f} degrees of freedom). If you know the standard uncertainty, state it in a "
       "column "
       "{}[{}]",
-      name, readings_name(*this), column_name(*this), column_name(*this), u * factor, unit_name_of(*this),
-      std * factor, open ? " (it did not converge)" : "", kSources[static_cast<std::size_t>(source)], freedom,
-      column_name(*this), unit_name_of(*this));
+      name, readings_name(*this), column_name(*this),
+      beside_u ? "other readings have one" : "the readings of other files have another scatter",
+      column_name(*this), u * factor, unit_name_of(*this), std * factor, open ? " (it did not converge)" : "",
+      kSources[static_cast<std::size_t>(source)], freedom, column_name(*this), unit_name_of(*this));
 }
 
 std::vector<FileNoise> estimate_file_noise(const model::Machine& machine, model::Measurement& rows) {
-  std::vector<FileNoise> list = without_u(rows);
-  for (FileNoise& noise : list) {
-    if (!take_repeats(rows, noise)) noise.u = first_value(machine, rows, noise);
-  }
-  for (const FileNoise& noise : list) write_estimate(rows, noise);
-  if (!all_from_repeats(list)) iterate_estimates(machine, rows, list);
+  auto [list, others_have] = without_u(rows);
+  bool repeated = false;
+  for (FileNoise& noise : list) repeated = take_repeats(rows, noise) || repeated;
+  // Without any u, only repeats show that the instruments differ: a residual contains the model's errors.
+  if (!others_have && (list.size() < 2 || !repeated)) return {};
+  for (FileNoise& noise : list)
+    if (!noise.from_repeats()) noise.u = first_value(machine, rows, noise);
+  model::Measurement estimated = rows;
+  for (const FileNoise& noise : list) write_estimate(estimated, noise);
+  const FileNoise* few = all_from_repeats(list) ? nullptr : iterate_estimates(machine, estimated, list);
+  if (few != nullptr && others_have) refuse_few_readings(*few, readings_of(rows, *few));
+  if (!others_have && (few != nullptr || !differ_clearly(list))) return {};
+  rows = std::move(estimated);
   return list;
 }
 
 std::vector<FileNoise> file_noise_of_residual(model::Measurement& rows, const Eigen::VectorXd& residual) {
-  std::vector<FileNoise> list = without_u(rows);
+  auto [list, others_have] = without_u(rows);
+  if (!others_have) return {};
   for (FileNoise& noise : list) {
     if (take_repeats(rows, noise)) continue;
     const std::vector<double> left = residuals_of(rows, noise, residual);
@@ -242,7 +281,7 @@ bool estimate_file_noise_again(const model::Machine& machine, model::Measurement
   if (all_from_repeats(noise)) return false;
   std::vector<FileNoise> next = noise;
   model::Measurement changed = rows;
-  iterate_estimates(machine, changed, next);
+  if (iterate_estimates(machine, changed, next) != nullptr) return false;
   bool other = false;
   for (std::size_t i = 0; i < next.size(); ++i)
     other = other || std::abs(next[i].u / noise[i].u - 1) > kOtherModel;

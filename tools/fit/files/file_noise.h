@@ -17,9 +17,10 @@ struct FileNoise {
   std::size_t file = 0;  // index in Measurement::files
   std::string name;      // of the file
   bool rotations = false;
-  double u = 0;        // mm; deg if `rotations`
-  double std = 0;      // standard uncertainty of `u`, same unit
-  double freedom = 0;  // degrees of freedom of the estimate
+  bool beside_u = true;  // false: no reading of the survey has u
+  double u = 0;          // mm; deg if `rotations`
+  double std = 0;        // standard uncertainty of `u`, same unit
+  double freedom = 0;    // degrees of freedom of the estimate
   enum class Source : std::uint8_t { kRepeats, kRepeatsInRuns, kFit, kGivenMachine };
   Source source = Source::kFit;
   /// True if the fit of the whole survey does not repeat this value: the estimate did not converge.
@@ -29,9 +30,10 @@ struct FileNoise {
   std::string sentence() const;
 };
 
-/// Estimates u of the readings without u, if other fit readings of the survey have u. Without this estimate a
-/// reading without u has the weight of u = 1 mm beside the others. The unit of the estimate is the lengths or
-/// the rotations of one file. The estimate is
+/// Estimates u of the readings without u, if other fit readings of the survey have u, or if repeats show that
+/// the files without u come from instruments of different noise (a ratio of at least 3). Without this
+/// estimate a reading without u has the weight of u = 1 mm beside the others. The unit of the estimate is the
+/// lengths or the rotations of one file. The estimate is
 /// - the standard deviation of repeats in the file, if the repeats have at least 5 degrees of freedom;
 /// - otherwise that of repeats in other runs (set-ups) of the file, beside an offset of each run;
 /// - otherwise the residual of the file beside a fit of all files, over its degrees of freedom (readings
@@ -40,7 +42,8 @@ struct FileNoise {
 ///   changes by less than 2 % (variance components: W. Förstner 1979). Outliers count as three standard
 ///   deviations.
 /// The function writes the estimates into `rows` (also for check rows of the file). Files without fit rows do
-/// not change. Returns the estimates; empty if all fit readings have u, or none has. Throws InputError if a
+/// not change. Returns the estimates; empty if all fit readings have u, or if none has and
+/// the files are alike. Throws InputError if a
 /// file has less than 5 degrees of freedom.
 std::vector<FileNoise> estimate_file_noise(const model::Machine& machine, model::Measurement& rows);
 
