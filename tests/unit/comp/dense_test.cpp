@@ -228,6 +228,25 @@ TEST(Dense, ThreeTablesInSuccessionGiveTheValuesOfTheProgram) {
     }
 }
 
+// The memory of a program depends on it: a step has three cells and one for each product, and takes at most
+// eight products with a constant factor, or four others. Where there are no jumps, and on a small target, it
+// takes half.
+TEST(Dense, LongSumHasAsFewStepsAsItsProductsNeed) {
+  const auto size_of = [](std::size_t kind, std::uint32_t count) {
+    std::vector<std::uint32_t> counts(5, 0);
+    counts[kind] = count;
+    Sample sample;
+    Sum(counts).add_to(sample);
+    return dense_size(sample.equation());
+  };
+  const bool small = size_of(0, 5) != 3 + 5 + 1;
+  for (std::size_t kind = 0; kind < 5; ++kind) {
+    const std::uint32_t most = (kind == 0 ? 8 : 4) / (small ? 2 : 1);
+    for (std::uint32_t count = 1; count <= 2 * 8 + 1; ++count)
+      EXPECT_EQ(size_of(kind, count), count + 3 * ((count + most - 1) / most) + 1) << kind << " " << count;
+  }
+}
+
 TEST(Dense, MemoryWithOneCellTooFewStaysAsItWas) {
   Sample sample;
   Sum({2, 1, 0, 1, 0}).add_to(sample);

@@ -286,6 +286,74 @@ TEST(Cycle, EachInputOfTheProgramIsReadAndItsSilenceIsAFault) {
   }
 }
 
+// The drive of an axis keeps its slew limit, so that the correction that an earlier program left is removed.
+TEST(Cycle, AxisThatTheNextProgramDoesNotCorrectGoesToZero) {
+  Rig rig({}, {}, 10);
+  ASSERT_TRUE(rig.run_to(Mode::kActive));
+  while (std::abs(rig.cycle().written(1).count) < 10'000) rig.tick();
+  const auto image = small_image();
+  BoundProgram bound(image->view);
+  const Output of_x = bound.program.outputs[0];
+  bound.program.outputs = {&of_x, 1};
+  rig.cycle().use(bound);
+  AxisTravel before = rig.cycle().written(1);
+  for (int i = 0; i < 2000; ++i) {
+    rig.tick();
+    ASSERT_LE(std::abs(rig.cycle().written(1).count - before.count), kSmallSlewY);
+    before = rig.cycle().written(1);
+  }
+  EXPECT_EQ(rig.cycle().written(1), AxisTravel{});
+  EXPECT_EQ(rig.cycle().wanted(1), AxisTravel{});
+  EXPECT_EQ(rig.cycle().limits(1), 0) << "an axis without a correction is at no limit";
+  EXPECT_EQ(rig.cycle().mode(), Mode::kActive);
+}
+
+// GIVEN a correction of Y, and then a program with which Y may not move THEN the correction stays, and the
+// next program, which corrects nothing, removes it.
+TEST(Cycle, ProgramWhoseAxisMayNotMoveStrandsNoCorrection) {
+  Rig rig({}, {}, 10);
+  ASSERT_TRUE(rig.run_to(Mode::kActive));
+  while (std::abs(rig.cycle().written(1).count) < 10'000) rig.tick();
+  const auto image = small_image();
+  BoundProgram still(image->view), empty;
+  std::vector<Output> outputs(still.program.outputs.begin(), still.program.outputs.end());
+  for (Output& out : outputs) out.slew = 0;
+  still.program.outputs = {outputs.data(), static_cast<std::uint32_t>(outputs.size())};
+  still.compensator = Compensator(still.program);
+  const AxisTravel held = rig.cycle().written(1);
+  rig.cycle().use(still);
+  for (int i = 0; i < 100; ++i) rig.tick();
+  EXPECT_EQ(rig.cycle().written(1), held);
+  rig.cycle().use(empty);
+  for (int i = 0; i < 2000; ++i) rig.tick();
+  EXPECT_EQ(rig.cycle().written(1), AxisTravel{});
+}
+
+// GIVEN a machine with as many inputs as an image may have, each with another reference
+// THEN the program knows each reference and reads each input.
+TEST(BoundProgram, KnowsTheReferenceOfEachOfTheMostInputs) {
+  std::string text = kSmallMachine, inputs, sum;
+  for (std::uint32_t i = 0; i < kMaxInputs; ++i) {
+    const std::string name = "S" + std::to_string(i), reference = std::to_string(10 + i);
+    inputs += "<" + name + " unit=\"degC\" reference=\"" + reference + "\"/>";
+    sum += "+cte*Y*(" + name + "-" + reference + ")";
+  }
+  const auto put = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("<T unit=\"degC\" reference=\"20\"/>", inputs);
+  put("+cte*Y*(T-20)", sum);
+  const Machine machine = parse_machine(text, "small.xml");
+  const auto image = load_image(compile_machine(machine, text, {}).image, machine);
+  ASSERT_EQ(image->view.inputs().size, kMaxInputs);
+  const BoundProgram bound(image->view);
+  for (std::uint32_t i = 0; i < kMaxInputs; ++i) {
+    EXPECT_EQ(bound.reference[i], InputMicro(1'000'000 * (10 + i))) << i;
+    EXPECT_TRUE(bound.reads_input[i]) << i;
+    EXPECT_EQ(bound.input[i], i);
+  }
+}
+
 TEST(Cycle, TicksCountAsActiveOnlyWhileTheyAre) {
   Rig rig;
   ASSERT_TRUE(rig.run_to(Mode::kReady));

@@ -354,6 +354,38 @@ TEST(FeatureInputs, DisplacementIsTheMotionOfASimulatedMachine) {
   }
 }
 
+// The page of the filter: the gain is exact at 18 % of the rate of the samples. GIVEN 180 Hz at a tick of 1
+// kHz, or 90 Hz at every second tick THEN the amplitude is that of the motion, without the 0.05 % that a part
+// of a hundred in this frequency makes.
+TEST(FeatureInputs, DisplacementIsExactAtEighteenHundredthsOfItsRate) {
+  for (const std::uint32_t every : {1u, 2u}) {
+    constexpr double kPeak_m_s2 = 10;
+    const double rate_Hz = 1000.0 / every, tone_Hz = 0.18 * rate_Hz, omega = 2 * kPi * tone_Hz;
+    SetInputs source;
+    FeatureInputs inputs(source, 2,
+                         {{.input = 1,
+                           .of = 0,
+                           .every = every,
+                           .lsb = InputMicro(20),
+                           .corner_mHz = 500,
+                           .lsb_nm_s2 = 20'000}},
+                         TimeUs(1000));
+    ASSERT_EQ(inputs.refused(), kNoInput);
+    std::complex<double> sum;
+    constexpr int kSettled = 20'000, kSamples = 10'000;
+    for (int k = 0; k < kSettled + kSamples; ++k) {
+      source.values[0] = InputMicro(std::llround(1e6 * kPeak_m_s2 * std::cos(omega * k / rate_Hz)));
+      for (std::uint32_t tick = 0; tick < every; ++tick) inputs.begin_tick();
+      InputMicro value;
+      if (k < kSettled) continue;
+      ASSERT_EQ(inputs.read_input(1, value), HalFault::kNone);
+      sum += 1e-6 * static_cast<double>(value.count) * std::polar(2.0 / kSamples, -omega * k / rate_Hz);
+    }
+    const double true_um = 1e6 * kPeak_m_s2 / (omega * omega);
+    EXPECT_NEAR(std::abs(sum) / true_um, 1, 1e-4) << tone_Hz;
+  }
+}
+
 TEST(FeatureInputs, DisplacementStartsFromRestAfterAGap) {
   SetInputs source;
   const FeatureRequest request{.input = 1, .of = 0, .bridged = 3, .corner_mHz = 5000};

@@ -674,6 +674,7 @@ TEST_F(LinkTest, LiveRegistersOfARotaryAxisAreThousandthsOfADegree) {
   ASSERT_TRUE(exchange.ticks.read(exchange.ticks.count() - 1, tick));
   tick.position[1] = (std::int64_t{9} << 32) / 4;  // 2.25 turns
   tick.correction[1] = -(1 << 30);                 // a quarter of a turn back
+  tick.position[2] = tick.input[1] = tick.correction[2] = 5'000'000;
   exchange.ticks.add(tick);
   HealthRecord health;
   ASSERT_TRUE(exchange.health.read(health));
@@ -688,6 +689,8 @@ TEST_F(LinkTest, LiveRegistersOfARotaryAxisAreThousandthsOfADegree) {
   EXPECT_EQ(pair(kLiveAxes + kLiveRegistersPerAxis), 810'000);
   EXPECT_EQ(pair(kLiveAxes + kLiveRegistersPerAxis + 2), -90'000'000);
   EXPECT_EQ(pair(kLiveAxes + 2 * kLiveRegistersPerAxis), 0) << "no third axis";
+  EXPECT_EQ(pair(kLiveAxes + 2 * kLiveRegistersPerAxis + 2), 0) << "no third axis";
+  EXPECT_EQ(pair(kLiveInputs + 2), 0) << "no second input";
   EXPECT_EQ(registers[kLiveLatency], 12'345) << "us";
 }
 
@@ -877,6 +880,34 @@ TEST_F(LinkTest, UploadBeginsWhenTheTrialBeforeIsPutAway) {
   EXPECT_EQ(begin(), LinkStatus::kNotReady) << "the medium does not say it yet";
   ASSERT_TRUE(uploader.look_after_store());
   EXPECT_EQ(begin(), LinkStatus::kDone);
+}
+
+// A reply contains whole records only, and as many as fit, on a board of any number of axes and inputs.
+TEST_F(LinkTest, ReplyHasAsManyWholeTicksAndTouchesAsFit) {
+  constexpr std::size_t kHead = kReplyHeaderBytes + 10, kRoom = kMaxReplyBytes - kHead;
+  Exchange exchange(64, 64);
+  for (int i = 0; i < 40; ++i) exchange.ticks.add(TickRecord{}), exchange.touches.add(TouchRecord{});
+  const BoardIdentity nobody;
+  Wiring wiring;
+  for (std::size_t axes = 1; axes <= kMaxAxes; ++axes) {
+    wiring.axes.push_back({"X"});
+    wiring.inputs = {};
+    for (std::size_t inputs = 0; inputs <= kMaxInputs; ++inputs) {
+      Link link(exchange, rig_.uploader(), wiring, TimeUs(1000), nobody);
+      const auto size_of_reply = [&](LinkOp op, std::uint32_t size) {
+        std::uint8_t request[12] = {static_cast<std::uint8_t>(op), 1}, reply[kMaxReplyBytes] = {};
+        request[10] = 1;  // every tick from number 0 on
+        const std::uint32_t answered = link.answer(request, size, reply, TimeUs(1));
+        EXPECT_EQ(static_cast<LinkStatus>(reply[2]), LinkStatus::kDone);
+        return answered;
+      };
+      const std::size_t tick = sizeof(LinkTick) + axes * sizeof(LinkAxis) + inputs * sizeof(LinkInput),
+                        touch = sizeof(LinkTouch) + axes * sizeof(LinkTouchAxis);
+      ASSERT_EQ(size_of_reply(LinkOp::kHistory, 12), kHead + kRoom / tick * tick) << axes << " " << inputs;
+      ASSERT_EQ(size_of_reply(LinkOp::kTouches, 10), kHead + kRoom / touch * touch) << axes;
+      if (inputs < kMaxInputs) wiring.inputs.push_back("T");
+    }
+  }
 }
 
 TEST_F(LinkTest, OnlyAxesAndInputsHaveNames) {

@@ -231,6 +231,8 @@ TEST_F(OperatorSetting, UnreadableRecordsKeepTheCorrectionOut) {
   EXPECT_TRUE(rig.service().operator_memory().damaged());
   rig.run(3000);
   EXPECT_EQ(mode(rig), Mode::kReady);
+  EXPECT_TRUE(rig.service().operator_memory().damaged()) << "until the operator decides";
+  EXPECT_EQ(exchange(rig).setting_flags.load() & kSettingDamaged, kSettingDamaged);
   give(rig, Command::kActivate, 2000);
   EXPECT_EQ(mode(rig), Mode::kActive);
   EXPECT_FALSE(rig.service().operator_memory().damaged()) << "the operator has decided";

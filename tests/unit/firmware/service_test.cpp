@@ -363,6 +363,12 @@ TEST(ServiceState, BoardOfTheMostAxesAndInputsTicks) {
   for (std::uint32_t axis = 0; axis < kMaxAxes; ++axis)
     EXPECT_EQ(state.axis_weight[axis], kFullWeight.count) << axis;
   EXPECT_EQ(service.cycle().health().ticks, 10u);
+  KeptHandler link;
+  service.serve(link, TimeUs(0), {});
+  std::uint16_t registers[kLiveRegisters];
+  link.handler->fill_registers(registers);
+  EXPECT_EQ(registers[kLiveAxisWeights + static_cast<int>(kMaxAxes) - 1], 10'000);
+  EXPECT_EQ(registers[kLiveInputs + 2 * static_cast<int>(kMaxInputs) - 1], 21'000) << "thousandths";
 }
 
 TEST(ServiceState, TickNamesTheAxesThatAreAtALimit) {

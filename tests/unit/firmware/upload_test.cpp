@@ -867,6 +867,42 @@ TEST_F(Upload, ImageThatFillsTheStoreIsTaken) {
   EXPECT_EQ(too_small.send(bytes).fault, UploadFault::kTooLarge);
 }
 
+/// A store that notes the range of each write.
+class NotingStore : public SimSlotStore {
+ public:
+  using SimSlotStore::SimSlotStore;
+  HalFault write_image(std::uint32_t slot, std::uint32_t offset, const std::uint8_t* bytes,
+                       std::uint32_t size) noexcept override {
+    ranges.emplace_back(offset, size);
+    return SimSlotStore::write_image(slot, offset, bytes, size);
+  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges;
+};
+
+// A small flash driver takes 4096 bytes in a write. No byte is written twice, and none is left out.
+TEST_F(Upload, IsWrittenInPiecesOfAtMost4096Bytes) {
+  constexpr auto kHeader = static_cast<std::uint32_t>(sizeof(UploadHeader));
+  for (const std::uint32_t image : {1u, 4095u, 4096u, 4097u, 12'288u, 12'289u}) {
+    NotingStore store(1 << 16);
+    UploadRig rig(store, key_);
+    std::vector<std::uint8_t> bytes(kHeader + image);
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
+    EXPECT_EQ(rig.send(bytes, 200).fault, UploadFault::kNotAnUpload);
+    std::uint32_t end = 0;
+    for (const auto& [offset, size] : store.ranges) {
+      EXPECT_EQ(offset, end);
+      EXPECT_LE(size, 4096u);
+      end = offset + size;
+    }
+    EXPECT_EQ(end, kHeader + image);
+    EXPECT_EQ(store.ranges.size(), 1 + (image + 4095) / 4096);
+    std::vector<std::uint8_t> stored(bytes.size());
+    ASSERT_EQ(store.read_image(0, 0, stored.data(), kHeader + image), HalFault::kNone);
+    EXPECT_EQ(stored, bytes);
+    EXPECT_EQ(store.read_image(0, kHeader + image, stored.data(), 1), HalFault::kNoReading);
+  }
+}
+
 TEST_F(Upload, BeginsWithTheSizeOfAHeaderToThatOfTheStore) {
   UploadRig rig(store_, key_);
   constexpr auto kHeader = static_cast<std::uint32_t>(sizeof(UploadHeader));
