@@ -89,6 +89,9 @@ EQUIVALENT = [
     ("bool on = false;", ("false", "true"), "a line that is read writes the value, and one that is not counts as off"),
     ("silent_[input] < UINT32_MAX ?", ("<", "<="), "only 2^32 ticks of silence show it, 49 days after the fault is latched"),
     ("missing_ < UINT32_MAX ?", ("<", "<="), "only 2^32 ticks of silence show it, 49 days after the fault is latched"),
+    ("172800, 5322240", ("172800", "172801"), "the sum changes by 5e-10, less than a unit of the result"),
+    ("172800, 5322240", ("5322240", "5322241"), "the sum changes by 2e-12, less than a unit of the result"),
+    ("(image_bytes + 7) / 8", ("7", "8"), "a word more, which nothing reads"),
     ("kTravelGuard = 14", ("14", "15"), "one guard bit more: the widest value stays below 2^63"),
 ]
 
@@ -96,7 +99,12 @@ EQUIVALENT = [
 def places(path):
     """(line number, column, old, new) of each possible change; comments, includes, templates and assertions are left out."""
     found = []
+    left_out = False  # of this build, which has no vectors of 256 bits
     for number, line in enumerate(open(os.path.join(ROOT, path)), 1):
+        if re.match(r"#(if|endif)", line):
+            left_out = line.startswith("#if VERNIER_THREE_TABLES")
+        if left_out:
+            continue
         code = re.sub(r'"[^"]*"', lambda m: " " * len(m.group()), line.split("//")[0])
         if re.match(r"\s*(#|template|static_assert|using|namespace|\})", code) or "static_cast<" in code and code.count("<") == 1:
             continue

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "tables/link_format.h"
 #include "tests/unit/firmware/rig.h"
@@ -329,6 +332,30 @@ TEST(Cycle, ProgramWhoseAxisMayNotMoveStrandsNoCorrection) {
   EXPECT_EQ(rig.cycle().written(1), AxisTravel{});
 }
 
+// The slowest drive moves by one count in a tick, on a board that had no program before.
+TEST(Cycle, ProgramWithASlewOfOneCountMovesItsAxes) {
+  const auto image = small_image();
+  Roaming motion({{0, 600'000'000}, {0, 200'000'000}}, {InputMicro(20'000'000)}, TimeUs(1000), 0.1, 1);
+  SimClock clock;
+  SimPlant plant(motion, 2, 1, {});
+  Cycle cycle({{{"X"}, {"Y"}}, {"T"}}, TimeUs(1000), Board{clock, plant, plant, plant});
+  BoundProgram slow(image->view);
+  std::vector<Output> outputs(slow.program.outputs.begin(), slow.program.outputs.end());
+  for (Output& out : outputs) out.slew = 1;
+  slow.program.outputs = {outputs.data(), static_cast<std::uint32_t>(outputs.size())};
+  slow.compensator = Compensator(slow.program);
+  cycle.use(slow);
+  plant.release();
+  for (int tick = 1; tick <= 1000; ++tick) {
+    plant.advance();
+    const AxisTravel before = cycle.written(0);
+    const bool ready = cycle.mode() == Mode::kReady && cycle.weight() == WeightQ16{};
+    cycle.tick(TimeUs(1000 * tick), ready ? Command::kActivate : Command::kNone);
+    ASSERT_LE(std::abs(cycle.written(0).count - before.count), 1);
+  }
+  EXPECT_GT(std::abs(cycle.written(0).count), 500);
+}
+
 // GIVEN a machine with as many inputs as an image may have, each with another reference
 // THEN the program knows each reference and reads each input.
 TEST(BoundProgram, KnowsTheReferenceOfEachOfTheMostInputs) {
@@ -346,12 +373,18 @@ TEST(BoundProgram, KnowsTheReferenceOfEachOfTheMostInputs) {
   const Machine machine = parse_machine(text, "small.xml");
   const auto image = load_image(compile_machine(machine, text, {}).image, machine);
   ASSERT_EQ(image->view.inputs().size, kMaxInputs);
-  const BoundProgram bound(image->view);
+  struct {
+    alignas(BoundProgram) std::byte place[sizeof(BoundProgram)];
+    std::int64_t behind = -77;
+  } memory;
+  const BoundProgram& bound = *std::construct_at(reinterpret_cast<BoundProgram*>(memory.place), image->view);
+  EXPECT_EQ(memory.behind, -77) << "nothing is written behind the last reference";
   for (std::uint32_t i = 0; i < kMaxInputs; ++i) {
     EXPECT_EQ(bound.reference[i], InputMicro(1'000'000 * (10 + i))) << i;
     EXPECT_TRUE(bound.reads_input[i]) << i;
     EXPECT_EQ(bound.input[i], i);
   }
+  std::destroy_at(&bound);
 }
 
 TEST(Cycle, TicksCountAsActiveOnlyWhileTheyAre) {

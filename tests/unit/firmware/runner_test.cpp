@@ -225,6 +225,16 @@ TEST(Runner, TimeThatJumpsOrRunsBackwardsIsAClockFault) {
   }
 }
 
+// A sleep that ends at the moment of the last wake-up is too short, but the time does not run backwards.
+TEST(Runner, TimeThatStandsStillIsNoClockFaultAndOneNanosecondBackIs) {
+  for (const int back : {0, 1}) {
+    RunnerBench bench;
+    while (bench.rig.cycle().mode() != Mode::kReady) bench.step();
+    bench.clock.late = InstantNs(-1'000'000 - back);
+    EXPECT_EQ(bench.step().latched, back == 0 ? Fault::kNone : Fault::kClock) << back;
+  }
+}
+
 // 1001 periods after the due time, 1000 ticks are left out one by one. A nanosecond later a new grid begins.
 TEST(Runner, LongestStopThatKeepsTheGridLeavesOutAThousandTicks) {
   for (const int more : {0, 1}) {

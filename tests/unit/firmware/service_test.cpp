@@ -175,9 +175,9 @@ TEST_F(BesideStore, SettingThatTheStoreDoesNotTakeIsAnsweredAfterFiveSeconds) {
   service_->look_after_store();
   give(Command::kDeactivate);
   EXPECT_EQ(later(), CommandHandler::kLater);
-  clock_.spend(InstantNs(4'999'000'000));
+  clock_.spend(InstantNs(4'999'999'000));
   EXPECT_EQ(later(), CommandHandler::kLater);
-  clock_.spend(InstantNs(2'000'000));
+  clock_.spend(InstantNs(1'000));
   ASSERT_EQ(later(), 1u);
   EXPECT_EQ(reply_[0], 1) << "not stored";
 }

@@ -554,6 +554,37 @@ TEST(Programs, TrialWhoseTimeEndsWhileItIsConfirmedIsKept) {
   bench.programs.look_away();
 }
 
+// Until the guardian has started a trial, its whole time is left, also after an earlier trial.
+TEST(Programs, TrialEndsAtItsTimeAndTellsWhatIsLeft) {
+  constexpr TimeUs kWhole(1000);
+  for (const bool keep : {false, true}) {
+    ProgramsBench bench;
+    const auto left = [&](std::int64_t now_us) {
+      return bench.programs.trial_left(TimeUs(now_us), kWhole).count;
+    };
+    bench.run_trial(kWhole);
+    EXPECT_EQ(left(50), 1000);
+    bench.guard(100);
+    bench.take(), bench.put_away(), bench.guard(100);
+    EXPECT_EQ(left(100), 1000);
+    EXPECT_EQ(left(1099), 1);
+    EXPECT_EQ(left(1100), 0);
+    EXPECT_EQ(left(5000), 0);
+    bench.guard(1099);
+    EXPECT_EQ(bench.programs.trial(), Trial::kRunning);
+    if (keep) {
+      ASSERT_TRUE(bench.programs.begin_to_keep());
+      bench.programs.kept(true);
+      bench.guard(1100);
+      EXPECT_EQ(bench.programs.trial(), Trial::kNone);
+    } else {
+      bench.guard(1100);
+      EXPECT_EQ(bench.programs.trial(), Trial::kOver);
+    }
+    EXPECT_EQ(left(1200), 1000) << "of the next trial";
+  }
+}
+
 TEST(Programs, TrialIsBeingGivenUpFromTheRequestUntilTheGuardianActs) {
   ProgramsBench bench;
   EXPECT_FALSE(bench.programs.give_up()) << "no trial";
@@ -601,6 +632,24 @@ TEST(Programs, ProgramThatALinkReadsKeepsItsMemoryUntilTheLinkLooksAway) {
 }
 
 // A medium that gives only a part of its records has had some.
+// Each place has room for the largest image, whose size is not always a multiple of a word: what one program
+// writes to its last byte, no other program and no other memory sees.
+TEST(Programs, EachPlaceHasRoomForTheLargestImage) {
+  for (std::uint32_t bytes = 1; bytes <= 40; ++bytes) {
+    Exchange exchange(16, 16);
+    Programs programs(exchange, Programs::kFewest, bytes, 0);
+    EXPECT_EQ(programs.image_bytes(), bytes);
+    std::vector<ProgramRef> taken;
+    for (ProgramRef one = programs.take(); one != nullptr; one = programs.take()) {
+      std::fill_n(one->image(), bytes, static_cast<std::uint8_t>(0xf0 + taken.size()));
+      taken.push_back(std::move(one));
+    }
+    ASSERT_EQ(taken.size(), Programs::kFewest);
+    for (std::size_t i = 0; i < taken.size(); ++i)
+      EXPECT_EQ(std::count(taken[i]->image(), taken[i]->image() + bytes, 0xf0 + static_cast<int>(i)), bytes);
+  }
+}
+
 TEST_F(Upload, RecordsThatAreCutAreALostImageAndNoNewBoard) {
   {
     UploadRig rig(store_, key_);
