@@ -92,6 +92,9 @@ EQUIVALENT = [
     ("172800, 5322240", ("172800", "172801"), "the sum changes by 5e-10, less than a unit of the result"),
     ("172800, 5322240", ("5322240", "5322241"), "the sum changes by 2e-12, less than a unit of the result"),
     ("(image_bytes + 7) / 8", ("7", "8"), "a word more, which nothing reads"),
+    ("kTerms = 64, kSums = 32, kRuns = 40", ("64", "65"), "a term more, which no sum reads"),
+    ("kTerms = 64, kSums = 32, kRuns = 40", ("32", "33"), "more work in a measurement, whose time is divided by its work"),
+    ("kTerms = 64, kSums = 32, kRuns = 40", ("40", "41"), "more work in a measurement, whose time is divided by its work"),
     ("kTravelGuard = 14", ("14", "15"), "one guard bit more: the widest value stays below 2^63"),
 ]
 

@@ -415,6 +415,17 @@ TEST(FeatureInputs, DisplacementStartsFromRestAfterAGap) {
   source.values[0] = InputMicro(INT64_MAX);
   inputs.begin_tick();
   EXPECT_EQ(inputs.held(), 1u) << "of the sample";
+  // The filter starts again after a gap, but the counter never goes back.
+  source.silent[0] = true;
+  for (int tick = 0; tick < 4; ++tick) inputs.begin_tick();
+  const std::uint64_t before = inputs.held();
+  EXPECT_EQ(before, 1u + 3u) << "three samples were bridged with the limited one";
+  source.silent[0] = false, source.values[0] = InputMicro(0);
+  inputs.begin_tick();
+  EXPECT_EQ(inputs.held(), before);
+  source.values[0] = InputMicro(INT64_MIN);
+  inputs.begin_tick();
+  EXPECT_EQ(inputs.held(), before + 1);
 }
 
 // Each signal counts up to 2^60, before one is subtracted from the other.

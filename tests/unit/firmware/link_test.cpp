@@ -910,6 +910,18 @@ TEST_F(LinkTest, ReplyHasAsManyWholeTicksAndTouchesAsFit) {
   }
 }
 
+TEST_F(LinkTest, ReadsOneByteOfTheConfirmedImageToAsManyAsFit) {
+  ASSERT_EQ(rig_.send(make_upload(small_image_bytes(2e-5), key_, 5, 0)).fault, UploadFault::kNone);
+  rig_.run(10);
+  ASSERT_EQ(rig_.uploader().confirm().fault, UploadFault::kNone);
+  constexpr std::uint8_t kMost = kMaxReplyBytes - kReplyHeaderBytes;
+  const auto read = [&](std::uint8_t bytes) { return status_of(link_, LinkOp::kRead, {0, 0, 0, 0, bytes}); };
+  EXPECT_EQ(read(0), LinkStatus::kBadValue);
+  EXPECT_EQ(read(1), LinkStatus::kDone);
+  EXPECT_EQ(read(kMost), LinkStatus::kDone);
+  EXPECT_EQ(read(kMost + 1), LinkStatus::kBadValue);
+}
+
 TEST_F(LinkTest, OnlyAxesAndInputsHaveNames) {
   rig_.run(1);
   const auto status = [&](std::uint8_t kind, std::uint8_t index) {

@@ -195,6 +195,24 @@ TEST(Probing, TouchWaitsForAFrameThatIsBeingWritten) {
   EXPECT_EQ(rig.touches().size(), 1u);
 }
 
+TEST(Probing, TouchesThatWaitedArePublishedInTheirOrder) {
+  const Profile profile{.feed_mm_s = 10};
+  TouchRig rig(profile, published_probe(), kResolution);
+  auto& exchange = const_cast<Exchange&>(rig.service->exchange());
+  {
+    const InterruptedWrite write(exchange.workpiece);
+    rig.run(profile, {{0.20, true}, {0.21, false}, {0.24, true}, {0.25, false}, {0.28, true}, {0.29, false}},
+            kResolution);
+    EXPECT_TRUE(rig.touches().empty());
+  }
+  rig.plant.advance(), rig.service->tick();
+  const auto touches = rig.touches();
+  ASSERT_EQ(touches.size(), 3u);
+  for (std::size_t i = 1; i < 3; ++i)
+    EXPECT_NEAR(static_cast<double>(touches[i].time_ns - touches[i - 1].time_ns), 40e6, 2e3)
+        << "two resolutions of the time stamps";
+}
+
 /// Deviation of X: 100 um in 100 mm.
 constexpr const char* kScaledMachine = R"xml(<machine name="scaled">
   <variables>

@@ -300,6 +300,24 @@ TEST_F(BesideStoreWithKey, RevertIsAnsweredWhenTheGuardianHasEndedTheTrial) {
   EXPECT_EQ(looks, 1);
 }
 
+// A link keeps the connection of a sender that signs: a request for a challenge proves nothing.
+TEST_F(BesideStoreWithKey, OnlyASignedRequestCountsAsSigned) {
+  for (int round = 0; round < 2; ++round) {
+    for (const LinkOp op : {LinkOp::kChallenge, LinkOp::kIdentify, LinkOp::kHello}) {
+      ask(op);
+      EXPECT_FALSE(link_.handler->was_signed()) << static_cast<int>(op) << ", round " << round;
+    }
+    bool was_signed = false;
+    meanwhile_ = [&] {
+      was_signed = link_.handler->was_signed();
+      run(3);
+      service_->look_after_programs();
+    };
+    board_.weight(0, 0.5);
+    EXPECT_TRUE(was_signed);
+  }
+}
+
 TEST_F(BesideStoreWithKey, OnlyTheRevertItselfWaitsForTheEndOfATrial) {
   const auto image = make_upload(small_image_bytes(2e-5), key_, 5, 0);
   board_.upload(image, [](double) {});
