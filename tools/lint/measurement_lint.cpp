@@ -13,6 +13,7 @@
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/import/kinds.h"
+#include "tools/import/reading/plain_cells.h"
 #include "tools/lint/lint_table.h"
 #include "tools/lint/measurement_meaning.h"
 #include "tools/model/chain/prediction.h"
@@ -54,6 +55,7 @@ class Look {
   std::vector<LintFinding> all() {
     if (look_at_bytes() && split() && look_at_header()) {
       look_at_rows();
+      look_for_lengths_between_points();
       if (!table_.rows.empty()) look_at_meaning(table_, file_, machine_, findings_);
     }
     confirm();
@@ -228,13 +230,31 @@ class Look {
     return true;
   }
 
+  /// Lengths between two named points ("AB"), in a file without the positions of an axis.
+  void look_for_lengths_between_points() {
+    const LintColumn* points = nullptr;
+    bool length = false;
+    for (const LintColumn& column : table_.columns) {
+      if (names_.is_axis(column.name)) return;
+      const auto unit = column.unit.empty() ? std::nullopt : format::find_unit(column.unit);
+      length |= unit && unit->dimension == format::Dimension::kLength;
+      if (column.cell.size() > 1 &&
+          std::all_of(column.cell.begin(), column.cell.end(), importer::names_two_points))
+        points = &column;
+    }
+    if (points != nullptr && length)
+      findings_.error(table_.header_line, points->name, importer::lengths_between_points_text());
+  }
+
   /// Columns that are missing in the header.
   void look_for_columns() {
     const bool any = std::any_of(table_.columns.begin(), table_.columns.end(),
                                  [&](const LintColumn& c) { return names_.is_reading(table_, c); });
     if (!any)
       findings_.error(table_.header_line, "", "no measured column (" + format::reading_column_names() + ")",
-                      "small letters are measured values, capitals commanded positions");
+                      "small letters are measured values, capitals commanded positions; if the readings "
+                      "have other names, assign the columns: " +
+                          command(file_));
     for (const LintColumn& column : table_.columns) {
       if (!names_.is_reading(table_, column)) continue;
       for (const format::ColumnGroup* const group :

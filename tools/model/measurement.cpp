@@ -94,7 +94,9 @@ class Builder {
           reader_.header(), missing.front()->name,
           fmt::format("no axis of the machine has a column; if the columns have other names "
                       "(a1, joint_1), read them by their names: vernier import table {} "
-                      "--machine MACHINE.xml -o NEW.csv",
+                      "--machine MACHINE.xml -o NEW.csv; distances between points (a caliper on a printed "
+                      "square) need the positions of the points: the columns corner, distance and from of "
+                      "the page touch",
                       reader_.header().file));
     std::string set;
     for (const Axis* const axis : missing) set += " " + set_of_axis(*axis);

@@ -20,7 +20,7 @@ namespace vernier::sheet {
 namespace {
 
 /// Words for units in the languages of shop floors, in small letters, after the signs are spelled out.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 66> kUnitWords = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 68> kUnitWords = {{
     {"millimeter", "mm"},
     {"millimetre", "mm"},
     {"millimeters", "mm"},
@@ -28,7 +28,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 66> kUnitWor
     {"micron", "um"},
     {"microns", "um"},
     {"micrometer", "um"},
+    {"micrometers", "um"},
     {"micrometre", "um"},
+    {"micrometres", "um"},
     {"mikrometer", "um"},
     {"mikron", "um"},
     {"my", "um"},

@@ -117,6 +117,57 @@ TEST(TypedCells, NotesALostMinusSign) {
   EXPECT_THAT(read(survey("-0,4", "0,4")), Not(HasSubstr("note")));
 }
 
+TEST(TypedCells, NotesAGainedMinusSign) {
+  std::string rows;
+  for (const char* const row :
+       {"0;6,3;14,1", "50;10,1;17,2", "100;13,0;20,9", "150;15,3;22,6", "200;15,3;23,1", "250;15,8;23,4",
+        "300;14,9;23,0", "350;15,1;22,4", "400;15,5;23,2", "450;17,2;24,8", "500;-19,6;27,1"})
+    rows += std::string(row) + "\n";
+  EXPECT_THAT(read("X [mm];1+ [um];1- [um]\n" + rows),
+              HasSubstr("note: line 12, \"-19,6\": the positive value agrees with the other readings of"));
+  // A run back begins at the position where the run out ended, and a second run where the first one ended.
+  EXPECT_THAT(read("Pos X [mm];Abw. X [um];Lauf\n0;-3,7;1\n50;0,1;1\n100;3,0;1\n150;5,3;1\n200;5,3;1\n"
+                   "200;12,8;1\n150;11,1;1\n100;9,5;1\n50;6,8;1\n0;3,1;1\n0;-3,7;2\n50;0,8;2\n100;3,5;2\n"
+                   "150;5,4;2\n200;6,1;2\n200;11,7;2\n150;12,0;2\n100;9,3;2\n50;6,0;2\n0;2,5;2\n"),
+              Not(HasSubstr("minus sign")));
+}
+
+/// Two runs in both directions with a column of runs. `factor`: of the deviations of the second run.
+std::string runs_below(double factor, const std::string& fourth = "150") {
+  const double first[] = {-3.7, 0.1, 3.0, 5.3, 5.3, 5.8}, back[] = {13.1, 11.5, 11.9, 12.8, 11.1, 9.5};
+  std::string rows = "X [mm],Abw. X [um],Richtung,Lauf\n";
+  for (int run = 1; run < 3; ++run)
+    for (int way = 0; way < 2; ++way)
+      for (int k = 0; k < 6; ++k) {
+        const int at = way == 0 ? k : 5 - k;
+        const double value = ((way == 0 ? first : back)[k] + 0.3 * ((k + run) % 3)) * (run == 2 ? factor : 1);
+        rows += (run == 1 && way == 0 && k == 3 ? fourth : std::to_string(50 * at)) + "," +
+                std::to_string(value) + (way == 0 ? ",hin," : ",zurück,") + std::to_string(run) + "\n";
+      }
+  return rows;
+}
+
+TEST(TypedCells, NotesARunWithTheOppositeSign) {
+  EXPECT_THAT(read(runs_below(1)), Not(HasSubstr("opposite sign")));
+  EXPECT_THAT(read(runs_below(-1)),
+              HasSubstr("the deviations of run 2 have the sizes of those of run 1 at all "
+                        "common positions, and the opposite sign"));
+  // Both directions of a machine whose backlash is centred are no opposite runs.
+  EXPECT_THAT(
+      read("X [mm],Abw. X [um],Lauf\n0,5.1,1\n50,5.3,1\n100,4.8,1\n150,5.2,1\n200,5,1\n250,5.1,1\n"
+           "300,5.2,1\n350,4.9,1\n350,-5,2\n300,-5.2,2\n250,-4.9,2\n200,-5.1,2\n150,-5,2\n100,-4.9,2\n"
+           "50,-5.2,2\n0,-5,2\n"),
+      Not(HasSubstr("opposite sign")));
+}
+
+TEST(TypedCells, NotesATargetThatNoOtherRunHas) {
+  EXPECT_THAT(read(runs_below(1)), Not(HasSubstr("target")));
+  for (const char* const typed : {"510", "105"})
+    EXPECT_THAT(read(runs_below(1, typed)),
+                HasSubstr(std::string("note: line 5, \"") + typed +
+                          "\": no other run has this target of X, and all other runs have 150"));
+}
+
 TEST(TypedCells, NotesACellInMillimetresByItsValueOrItsDecimals) {
   EXPECT_THAT(read(survey("-11,7", "-0,0117")), HasSubstr("note: line 10, \"-0,0117\": this cell of"));
   EXPECT_THAT(read(survey("-1,6", "-0,0016")), HasSubstr("note: line 5, \"-0,0016\": this cell of"));

@@ -13,6 +13,7 @@
 #include "tools/model/measurement.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
+#include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
 namespace vernier::measurement_lint_test {
@@ -38,6 +39,21 @@ struct Case {
   const char* says;  // part of a finding in one line
 };
 void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
+
+/// Two runs along X. `sign`: of the deviations of the second run.
+std::string two_runs(int sign) {
+  std::string rows = "X[mm],Y[mm],Z[mm],x[mm],run\n";
+  for (int run = 1; run < 3; ++run) {
+    const int of_run = run == 1 ? 1 : sign;
+    int at = 0;
+    for (const int um : {3, 1, -3, -4, -2, 2, 4, 5}) {
+      rows += std::to_string(at) + ",0,-9," + number_text(at + of_run * um / 1000.0) + "," +
+              std::to_string(run) + "\n";
+      at += 50;
+    }
+  }
+  return rows;
+}
 
 const std::string kHead = "X[mm],Y[mm],Z[mm],dirX,vY[mm/s],t[s],T_column[degC],x[mm],y[mm],z[mm],run,role\n";
 const std::string kRow1 = "0,0,-300,1,0,1,20,0,0,-300,a,fit\n",
@@ -85,6 +101,12 @@ const Case kCases[] = {
      "table FILE --set \"Z[mm]=POSITION\" -o NEW.csv"},
     {"AxisInSmallLetters", "X[mm],Y[mm],z[mm],x[mm]\n1,2,3,4\n", "there is z: names have capitals"},
     {"NothingMeasured", "X[mm],Y[mm],Z[mm]\n1,2,3\n", "no measured column"},
+    {"NothingMeasuredNamesTheImport", "J1[deg],Tx[mm]\n1,2\n",
+     "if the readings have other names, assign the columns: vernier import table s.csv"},
+    {"LengthsBetweenPoints", "Strecke,length[mm]\nAB,165.49\nCD,165.51\n",
+     "s.csv:1: error: \"Strecke\": the rows are lengths between two points"},
+    {"RunWithTheOppositeSign", two_runs(-1),
+     "s.csv:10: warning: \"-0.003\": the deviations of run 2 have the sizes of those of run 1"},
     {"WildCell", along_x("9999"), "s.csv:9: warning: \"9999\": this value of x differs "},
     {"OutlierOfOneReading", along_x("420.070"),
      "s.csv:9: warning: \"420.070\": the deviation 70 um of this reading is far outside the deviations of "
@@ -213,6 +235,11 @@ TEST(MeasurementLintOf, EveryKindOfReadingOfTheFormatsIsOne) {
   const auto alone = lint_measurement("X[mm],distance[mm]\n1,5\n8,5\n", "s.csv", &simple);
   ASSERT_FALSE(alone.empty());
   EXPECT_NE(in_one_line(alone.front()).find("no measured column (x y z"), std::string::npos);
+}
+
+TEST(MeasurementLintOf, RunsOfOneSignSayNothingAboutTheSign) {
+  for (const LintFinding& finding : lint_measurement(two_runs(1), "s.csv", &machine()))
+    EXPECT_EQ(finding.what.find("opposite sign"), std::string::npos) << in_one_line(finding);
 }
 
 TEST(MeasurementLintOf, FilesOfBothKindsAreLookedAtTogether) {

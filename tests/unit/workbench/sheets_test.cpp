@@ -38,6 +38,7 @@ TEST(Sheets, AMeasurementFileIsToldFromASpreadsheetByItsFirstLine) {
   EXPECT_FALSE(begins_as_measurement(kGerman));
   EXPECT_FALSE(begins_as_measurement("X (mm),x (mm)\n0,1\n"));
   EXPECT_FALSE(begins_as_measurement("X,x\n0,1\n")) << "without a unit";
+  EXPECT_FALSE(begins_as_measurement("joint_a1 [deg],joint_a2 [deg],Tx [mm]\n1,2,3\n")) << "no reading";
   EXPECT_FALSE(begins_as_measurement(""));
 }
 

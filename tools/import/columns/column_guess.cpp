@@ -54,9 +54,19 @@ std::string other(const sheet::Heading& heading) {
                                                             {"fahrtrichtung", kSenseOfAxis},
                                                             {"anfahrrichtung", kSenseOfAxis},
                                                             {"approach", kSenseOfAxis},
+                                                            {"direzione", kSenseOfAxis},
+                                                            {"corsa", columns::kRun},
+                                                            {"ciclo", columns::kRun},
                                                             {"motion", kSenseOfAxis}};
   const auto found = kNames.find(text::in_small_letters(heading.name));
-  return found == kNames.end() ? sheet::name_from_words(heading.name) : found->second;
+  if (found != kNames.end()) return found->second;
+  // "Run #", "Lauf Nr.": the number of the run.
+  std::vector<std::string> words;
+  for (const std::string& word : heading_words(text::in_small_letters(heading.name)))
+    if (!says_counting(word)) words.push_back(word);
+  const auto run = words.size() == 1 ? kNames.find(words.front()) : kNames.end();
+  return run != kNames.end() && run->second == columns::kRun ? run->second
+                                                             : sheet::name_from_words(heading.name);
 }
 
 /// True if any word of a heading is in a list of words.

@@ -120,6 +120,15 @@ void leave_statistics(const sheet::SheetTable& table, std::vector<SheetColumn>& 
       leave_column(columns[k], "this column is computed from the readings in the other columns");
 }
 
+/// True if the positions of an axis are lengths.
+bool is_linear(const std::vector<SheetColumn>& columns, const std::string& axis) {
+  return std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& one) {
+    const auto unit = one.unit.empty() ? std::nullopt : format::find_unit(one.unit);
+    return one.use == SheetColumn::Use::kColumn && one.name == axis && unit &&
+           unit->dimension == format::Dimension::kLength;
+  });
+}
+
 /// True if the positions of an axis are angles.
 bool rotates(const std::vector<SheetColumn>& columns, const std::string& axis) {
   return std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& one) {
@@ -127,7 +136,8 @@ bool rotates(const std::vector<SheetColumn>& columns, const std::string& axis) {
   });
 }
 
-/// The sign " is the unit arcsec beside positions in degrees, and inch elsewhere.
+/// The sign " is the unit arcsec beside positions of A, B and C that are no lengths (the unit may be one that
+/// is not known, such as gon), and inch elsewhere.
 void settle_arcseconds(std::vector<SheetColumn>& columns, const Guess& guess) {
   std::string only;
   std::size_t axes = 0;
@@ -143,7 +153,7 @@ void settle_arcseconds(std::vector<SheetColumn>& columns, const Guess& guess) {
       const bool of_axis = deviation
                                ? column.name == axis || (column.name.empty() && axes == 1 && only == axis)
                                : column.name == *reading_of(axis);
-      if (of_axis && rotates(columns, axis)) column.unit = "arcsec";
+      if (of_axis && !is_linear(columns, axis)) column.unit = "arcsec";
     }
   }
 }

@@ -14,6 +14,7 @@
 #include "tools/import/reading/invalid_rows.h"
 #include "tools/import/reading/odd_rows.h"
 #include "tools/import/reading/paired_sheets.h"
+#include "tools/import/reading/plain_cells.h"
 #include "tools/import/reading/rows_below.h"
 #include "tools/import/reading/side_runs.h"
 #include "tools/import/reading/side_statistics.h"
@@ -22,6 +23,7 @@
 #include "tools/import/reading/verdict_columns.h"
 #include "tools/import/sizes/deviation_sizes.h"
 #include "tools/import/sizes/mistyped_cells.h"
+#include "tools/import/sizes/odd_runs.h"
 #include "tools/import/sizes/outlying_cells.h"
 #include "tools/import/sizes/position_sizes.h"
 #include "tools/import/sizes/row_shift.h"
@@ -247,6 +249,7 @@ void judge_sizes(SheetReading& reading) {
   if (!doubts.empty()) return;
   note_outlying_cells(reading.sheet, reading.table, sized);
   note_mistyped_cells(reading.sheet, reading.table, sized);
+  note_odd_runs(reading.sheet, reading.table, sized);
   note_other_scales(reading.sheet, reading.table, sized);
 }
 
@@ -296,6 +299,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   result.wishes = wishes_of(words, std::move(wishes));
   result.sheet = sheet::read_sheet(bytes, file, result.wishes.format);
   const std::set<std::size_t> degrees = convert_degree_cells(result.sheet);
+  leave_tolerances(result.sheet);
   sheet::keep_table(result.sheet, result.wishes.format.table);
   const std::vector<RunLine> run_lines = take_run_lines(result.sheet);
   result.table = sheet::parts_of_sheet(result.sheet);
@@ -315,6 +319,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   std::vector<std::string> named = words.columns;
   named.insert(named.end(), words.deviations.begin(), words.deviations.end());
   leave_side_statistics(result.sheet, result.table, named);
+  leave_results(result.sheet, result.table, named);
   named.insert(named.end(), words.left.begin(), words.left.end());
   for (const SheetWishes::Assignment& wish : result.wishes.assignments) named.push_back(wish.heading);
   leave_computed_rows(result.sheet, result.table);
@@ -322,6 +327,10 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
     join_paired_sheet(result.sheet, result.table, bytes, result.wishes.format,
                       result.wishes.format.sheet.empty());
   leave_verdicts(result.sheet, result.table, named);
+  settle_roles(result.sheet, result.table, named);
+  settle_uncertainties(result.sheet, result.table, named);
+  note_lengths_between_points(result.sheet, result.table);
+  note_order_of_time(result.sheet, result.table);
   apply_sign_column(result.sheet, result.table, named);
   leave_differences(result.sheet, result.table, named);
   bool unfolded_axes =

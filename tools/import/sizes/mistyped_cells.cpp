@@ -31,11 +31,11 @@ constexpr std::size_t kFewestUsual = 3;   // cells with the usual number of deci
 constexpr double kLargestCell = 1.5;      // a cell in the other unit is at most so many times the largest one
 constexpr std::size_t kMostReadings = 20000;  // more are the log of an instrument, which nobody typed
 
-enum class Typo { kMinus, kUnit, kUnitByDecimals };
+enum class Typo { kLostMinus, kGainedMinus, kUnit, kUnitByDecimals };
 
 struct Mistyped {
   std::size_t index = 0;
-  Typo typo = Typo::kMinus;
+  Typo typo = Typo::kLostMinus;
 };
 
 struct TypedColumn {
@@ -43,14 +43,23 @@ struct TypedColumn {
   std::vector<std::size_t> row, decimals;
 };
 
-/// The approach direction by the motion to the position, if the table has no column of directions.
+/// The approach direction by the motion to the position, if the table has no column of directions. A second
+/// reading at a position begins the motion to the next one: a run back that begins where the run out ended.
 void settle_directions_by_order(std::vector<PlacedReading>& readings) {
-  int sense = 0;
+  int next = 0;
+  std::vector<int> behind(readings.size(), 0);  // direction of the next motion
+  for (std::size_t i = readings.size(); i-- > 1;) {
+    const double step = readings[i].position - readings[i - 1].position;
+    behind[i] = next;
+    next = step > 0 ? 1 : step < 0 ? -1 : next;
+  }
+  int sense = next;
   for (std::size_t i = 0; i < readings.size(); ++i) {
-    const std::size_t next = i + 1 < readings.size() ? i + 1 : i;
-    const double step = i == 0 ? readings[next].position - readings[0].position
-                               : readings[i].position - readings[i - 1].position;
-    sense = step > 0 ? 1 : step < 0 ? -1 : sense;
+    const double step = i == 0 ? 0 : readings[i].position - readings[i - 1].position;
+    if (step != 0)
+      sense = step > 0 ? 1 : -1;
+    else if (i > 0 && behind[i] != 0)
+      sense = behind[i];
     readings[i].sense = sense;
   }
 }
@@ -133,8 +142,8 @@ std::vector<Mistyped> mistyped_cells(const TypedColumn& typed) {
   for (std::size_t i = 0; i < typed.readings.size(); ++i) {
     const double value = typed.readings[i].value;
     const double last_digit = std::pow(10, -static_cast<double>(typed.decimals[i]));
-    if (value > 0 && agrees(typed, expected, i, -value, 0))
-      found.push_back({i, Typo::kMinus});
+    if (value != 0 && agrees(typed, expected, i, -value, 0))
+      found.push_back({i, value > 0 ? Typo::kLostMinus : Typo::kGainedMinus});
     else if (value != 0 && typed.decimals[i] > 0 &&
              agrees(typed, expected, i, kOtherUnit * value, kOtherUnit * last_digit / 2))
       found.push_back({i, Typo::kUnit});
@@ -146,10 +155,15 @@ std::vector<Mistyped> mistyped_cells(const TypedColumn& typed) {
 /// What is strange about a cell, and the question to the user.
 std::string text_of(Typo typo, const std::string& heading) {
   switch (typo) {
-    case Typo::kMinus:
+    case Typo::kLostMinus:
       return fmt::format(
           "the negative value agrees with the other readings of \"{}\", and this value does not: "
           "is a minus sign lost?",
+          heading);
+    case Typo::kGainedMinus:
+      return fmt::format(
+          "the positive value agrees with the other readings of \"{}\", and this value does not: "
+          "is the minus sign wrong?",
           heading);
     case Typo::kUnit:
       return fmt::format(

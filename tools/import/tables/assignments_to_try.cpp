@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "tools/format/units.h"
 #include "tools/import/words/sheet_words.h"
@@ -73,8 +76,49 @@ bool names_counting(const sheet::Heading& heading) {
   });
 }
 
-/// Options that make columns X, Y, Z in a unit of length the measured point, if most other columns of numbers
-/// have no unit: poses of a robot by its joints. Empty for other tables.
+bool is_length(const std::string& unit) {
+  const auto found = format::find_unit(unit);
+  return !unit.empty() && found && found->dimension == format::Dimension::kLength;
+}
+
+/// The coordinate x, y or z that ends a heading, and the text before the coordinate: "Tx", "tracker_x", "P
+/// X".
+struct Coordinate {
+  std::string prefix;
+  char of = 0;  // 'x', 'y', 'z'; 0: the heading does not end with a coordinate
+};
+
+Coordinate coordinate_of(const std::string& name) {
+  const std::string small = text::in_small_letters(name);
+  constexpr std::string_view kCoordinates = "xyz";
+  if (small.empty() || kCoordinates.find(small.back()) == std::string_view::npos) return {};
+  return {small.substr(0, small.size() - 1), small.back()};
+}
+
+/// Options that make three columns of lengths whose names differ in the coordinate alone (Tx, Ty, Tz) the
+/// measured point. Empty if the table does not have exactly one such triple.
+std::string named_triple(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns) {
+  std::map<std::string, std::map<char, std::size_t>> triples;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const SheetColumn& column = columns[k];
+    if (column.use != SheetColumn::Use::kColumn || column.words || !is_length(column.unit)) continue;
+    const Coordinate coordinate = coordinate_of(table.headings[k].name);
+    if (coordinate.of != 0) triples[coordinate.prefix].emplace(coordinate.of, k);
+  }
+  constexpr std::size_t kCoordinates = 3;
+  std::string options;
+  for (const auto& [prefix, triple] : triples) {
+    if (triple.size() != kCoordinates) continue;
+    if (!options.empty()) return "";
+    for (const auto& [of, k] : triple)
+      options += fmt::format("{}--column \"{}={}\"", options.empty() ? "" : " ", of, table.headings[k].text);
+  }
+  return options;
+}
+
+/// Options that make the columns of a point (X, Y, Z, or one triple such as Tx, Ty, Tz) in a unit of length
+/// the measured point, if most other columns of numbers have no unit or the unit of an angle: poses of a
+/// robot by its joints. Empty for other tables.
 std::string point_of_robot(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
                            const Guess& guess) {
   constexpr std::size_t kFewestJoints = 3;  // fewer columns may be temperatures or loads
@@ -83,8 +127,7 @@ std::string point_of_robot(const sheet::SheetTable& table, const std::vector<She
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words) continue;
-    const auto unit = format::find_unit(column.unit);
-    const bool length = !column.unit.empty() && unit && unit->dimension == format::Dimension::kLength;
+    const bool length = is_length(column.unit);
     const bool point = column.name == "X" || column.name == "Y" || column.name == "Z";
     if (point && !length) return "";
     if (point)
@@ -96,9 +139,24 @@ std::string point_of_robot(const sheet::SheetTable& table, const std::vector<She
                     ? 1
                     : 0;
   }
+  if (options.empty()) options = named_triple(table, columns);
   return joints >= kFewestJoints && !options.empty()
              ? options + " (the point that was measured in the poses of a robot)"
              : "";
+}
+
+/// True if the angles of a table are the joints of a robot: three or more of them beside a length.
+bool angles_are_joints(const std::vector<SheetColumn>& columns) {
+  constexpr std::ptrdiff_t kFewestJoints = 3;
+  const auto numbers = [](const SheetColumn& one) {
+    return one.use == SheetColumn::Use::kColumn && !one.words && !is_known_name(one.name);
+  };
+  return std::count_if(columns.begin(), columns.end(),
+                       [&](const SheetColumn& one) {
+                         return numbers(one) && is_angle(one.unit) && !one.unit.empty();
+                       }) >= kFewestJoints &&
+         std::any_of(columns.begin(), columns.end(),
+                     [&](const SheetColumn& one) { return numbers(one) && is_length(one.unit); });
 }
 
 }  // namespace
@@ -118,12 +176,14 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
     return std::any_of(table.headings.begin(), table.headings.end(),
                        [&](const sheet::Heading& one) { return Guess::bare(one.name) == kind; });
   };
+  const bool joints = angles_are_joints(columns);
   const bool shown = !has(Guess::Bare::kTarget) && has(Guess::Bare::kActual);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name) ||
         guess.is_motion(column.name) || is_sense(column.name) || is_known_name(column.name) ||
-        names_counting(table.headings[k]) || counts_rows(sheet, table, k))
+        names_counting(table.headings[k]) || counts_rows(sheet, table, k) ||
+        (joints && is_angle(column.unit)))
       continue;
     Guess::Bare bare = Guess::bare(table.headings[k].name);
     if (bare == Guess::Bare::kDisplay && shown) bare = Guess::Bare::kTarget;

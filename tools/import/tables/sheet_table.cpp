@@ -304,8 +304,7 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
   if (is_label(column.name)) {
     const std::string small = text::in_small_letters(cell);
     if (column.name != columns::kRole) return cell;
-    if (small == "kontrolle" || small == "prüfen") return format::kCheckRole;
-    if (format::is_role(small) || small.empty()) return small;
+    if (std::string role = role_said(small); !role.empty() || small.empty()) return role;
     throw text::InputError(place, cell, format::kRoleRule);
   }
   if (is_missing(cell) && !is_sense(column.name) && !(axis && is_failed_formula(cell))) return "";

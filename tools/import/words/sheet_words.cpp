@@ -6,6 +6,7 @@
 #include <cctype>
 #include <set>
 
+#include "tools/format/columns.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -15,22 +16,24 @@ using WordSet = std::set<std::string, std::less<>>;
 
 const WordSet kTargetWords = {
     "pi",  // P_i of ISO 230-2
-    "soll",        "sollwert",    "target",       "nominal",      "cmd",          "command",
-    "commanded",   "position",    "pos",          "set",          "ziel",         "achse",
-    "axis",        "machine",     "maschine",     "nom",          "sollposition", "zielposition",
-    "nennmaß",     "nennmass",    "nennwert",     "nennposition", "sollmaß",      "sollmass",
-    "kommandiert", "befohlen",    "programmiert", "programmed",   "demand",       "setpoint",
-    "vorgabe",     "vorgabewert", "weg",          "cote",         "consigne",     "cible"};
-const WordSet kMeasuredWords = {
-    "ist",  "istwert",   "istposition", "istmaß",       "istmass",  "measured",   "actual", "act",
-    "meas", "mess",      "messwert",    "gemessen",     "reading",  "tracker",    "laser",  "read",
-    "mes",  "messpunkt", "messpunkte",  "messposition", "istpunkt", "antastpunkt"};
+    "soll",         "sollwert",  "target",       "nominal",      "cmd",      "command",      "commanded",
+    "position",     "pos",       "set",          "ziel",         "achse",    "axis",         "machine",
+    "maschine",     "nom",       "sollposition", "zielposition", "nennmaß",  "nennmass",     "nennwert",
+    "nennposition", "sollmaß",   "sollmass",     "kommandiert",  "befohlen", "programmiert", "programmed",
+    "demand",       "setpoint",  "vorgabe",      "vorgabewert",  "weg",      "cote",         "consigne",
+    "cible",        "posizione", "quota",        "nominale",     "comandata"};
+const WordSet kMeasuredWords = {"ist",      "istwert",     "istposition", "istmaß",     "istmass",
+                                "measured", "actual",      "act",         "meas",       "mess",
+                                "messwert", "gemessen",    "reading",     "tracker",    "laser",
+                                "read",     "mes",         "messpunkt",   "messpunkte", "messposition",
+                                "istpunkt", "antastpunkt", "misurata",    "misurato",   "effettiva"};
 /// The position that the control shows.
 const WordSet kDisplayWords = {"anzeige",   "angezeigt", "angezeigte",     "anzeigewert", "display",
                                "displayed", "dro",       "digitalanzeige", "indicated",   "readout"};
 const WordSet kDeviationWords = {"abweichung", "abweichungen", "deviation", "deviations", "dev", "error",
                                  "errors", "fehler", "err", "delta", "diff", "abw", "differenz", "difference",
-                                 "ecart", "\u00e9cart", "\u00e9carts",
+                                 "ecart", "\u00e9cart", "\u00e9carts", "scostamento", "scostamenti",
+                                 "deviazione", "errore", "errori",
                                  // Greek letters, and the sign of the increment.
                                  "\u0394", "\u03b4", "\u2206"};
 const WordSet kCorrectionWords = {"korr", "corr", "comp", "komp"};
@@ -54,9 +57,9 @@ const WordSet kStatisticWords = {
     "moyenne", "écart-type", "mittelwerts", "umkehrspanne", "umkehrspannen", "umkehrfehler", "umkehrspiel",
     // Signs of a mean and of a standard deviation; Ø has no small letter here.
     "x\u0304", "x\u0305", "ø", "Ø", "⌀", "∅", "σ", "2σ", "3σ"};
-const WordSet kForthWords = {"1",    "+1",       "+",       "forward", "fwd",      "forth",    "up",
-                             "pos",  "positive", "positiv", "vor",     "vorwärts", "hin",      "auf",
-                             "plus", "cw",       "aller",   "\u2191",  "\u2192",   "hinfahrt", "hinweg"};
+const WordSet kForthWords = {"1",        "+1",      "+",      "forward",  "fwd",    "forth", "up",   "pos",
+                             "positive", "positiv", "vor",    "vorwärts", "hin",    "auf",   "plus", "cw",
+                             "aller",    "\u2191",  "\u2192", "hinfahrt", "hinweg", "andata"};
 const WordSet kBackWords = {"-1",
                             "-",
                             "backward",
@@ -81,6 +84,7 @@ const WordSet kBackWords = {"-1",
                             "her",
                             "ab",
                             "retour",
+                            "ritorno",
                             "minus",
                             "ccw",
                             "\u2212",
@@ -89,13 +93,14 @@ const WordSet kBackWords = {"-1",
                             "\u2193",
                             "\u2190"};
 /// Words of a run, in headings, titles and remarks.
-const WordSet kRunWords = {"lauf",        "run",   "messlauf", "messreihe", "messung",
-                           "durchgang",   "pass",  "passage",  "zyklus",    "cycle",
-                           "measurement", "fahrt", "serie",    "series",    "reihe"};
+const WordSet kRunWords = {"lauf",  "run",     "messlauf", "messreihe", "messung",     "durchgang",
+                           "pass",  "passage", "zyklus",   "cycle",     "measurement", "fahrt",
+                           "serie", "series",  "reihe",    "corsa",     "ciclo"};
 const WordSet kWayWords = {"hin",        "her",       "zurück",   "zur",       "zurueck", "vor",
                            "rück",       "rueck",     "forward",  "fwd",       "forth",   "back",
                            "backward",   "backwards", "bwd",      "hinfahrt",  "hinweg",  "rückfahrt",
-                           "rueckfahrt", "rückweg",   "vorwärts", "rückwärts", "aller",   "retour"};
+                           "rueckfahrt", "rückweg",   "vorwärts", "rückwärts", "aller",   "retour",
+                           "andata",     "ritorno"};
 
 }  // namespace
 
@@ -189,6 +194,16 @@ int sense_said(std::string_view word) {
   std::string small = text::in_small_letters(word);
   if (is_axis_direction(small)) small.erase(0, 1);
   return kForthWords.contains(small) ? 1 : kBackWords.contains(small) ? -1 : 0;
+}
+
+std::string role_said(std::string_view word) {
+  static const WordSet kCheck = {format::kCheckRole, "prüfung",    "pruefung",      "prüfen",
+                                 "pruefen",          "kontrolle",  "kontrollpunkt", "prüfpunkt",
+                                 "validierung",      "validation", "verification",  "verifikation"};
+  static const WordSet kFit = {format::kFitRole, "anpassung",    "anpassen",    "ausgleich",
+                               "ausgleichung",   "kalibrierung", "calibration", "fitting"};
+  const std::string small = text::in_small_letters(word);
+  return kCheck.contains(small) ? format::kCheckRole : kFit.contains(small) ? format::kFitRole : "";
 }
 
 std::vector<std::string> title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table) {

@@ -67,6 +67,8 @@ bool is_axis_direction(std::string_view word);
 /// Returns the approach direction that a word states: 1 for forward, +, hin …; -1 for back, -, zurück …; 0
 /// for other words.
 int sense_said(std::string_view word);
+/// Returns the role that a word states: fit or check for "Anpassung", "Prüfung"; empty for another word.
+std::string role_said(std::string_view word);
 
 /// Returns the cells above the headings of a table.
 std::vector<std::string> title_cells(const sheet::Sheet& sheet, const sheet::SheetTable& table);

@@ -71,7 +71,11 @@ std::vector<Part> parts_of(const std::string& title) {
     std::optional<Quantity> quantity;
     for (const std::string& piece : heading_words(text::in_small_letters(word)))
       if (const auto one = quantity_of(piece)) quantity = one;
-    if (quantity) parts.push_back({*quantity, all, ""});
+    // "Error units: um" are the units of the errors.
+    const bool of_quantity = quantity == Quantity::kValues && parts.back().quantity != Quantity::kNone &&
+                             parts.back().quantity != Quantity::kValues &&
+                             parts.back().text.find(' ') == std::string::npos;
+    if (quantity && !of_quantity) parts.push_back({*quantity, all, ""});
     all = is_one_of(text::in_small_letters(word), {"alle", "aller", "all"});
     parts.back().text += (parts.back().text.empty() ? "" : " ") + word;
   }
@@ -155,8 +159,10 @@ TitleUnits units_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& t
   bool deviations = false, positions = false;  // contradictions
   for (const std::string& title : title_cells(sheet, table)) {
     take(found.deviations, unit_of_deviations_in(title), title, deviations);
-    take(found.positions, unit_of(parts_of(title), {Quantity::kPosition, Quantity::kValues}, true), title,
-         positions);
+    // "Units: mm  Error units: um": the unit of the values is that of the positions.
+    const std::vector<Part> parts = parts_of(title);
+    const bool apart = has_unit(unit_of(parts, {Quantity::kDeviation}));
+    take(found.positions, unit_of(parts, {Quantity::kPosition, Quantity::kValues}, !apart), title, positions);
   }
   if (deviations) found.deviations = {};
   if (positions) found.positions = {};

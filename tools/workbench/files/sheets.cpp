@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "tools/format/columns.h"
 #include "tools/format/csv_file.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
@@ -45,6 +46,18 @@ Json first_lines(const std::string& csv) {
   return lines;
 }
 
+/// True if one of the columns is a reading of the measurement format. Without one the headings are those of a
+/// spreadsheet, whatever their form: joint_a1 [deg],Tx [mm].
+bool has_reading(const std::vector<format::CsvColumn>& columns) {
+  const auto find = [&](std::string_view name) -> const format::CsvColumn* {
+    const auto found = std::find_if(columns.begin(), columns.end(),
+                                    [&](const format::CsvColumn& one) { return one.name == name; });
+    return found == columns.end() ? nullptr : &*found;
+  };
+  return std::any_of(columns.begin(), columns.end(),
+                     [&](const format::CsvColumn& one) { return format::is_reading(one, find); });
+}
+
 }  // namespace
 
 bool begins_as_measurement(const std::string& text) {
@@ -56,8 +69,9 @@ bool begins_as_measurement(const std::string& text) {
     try {
       const auto commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
       const format::CsvFile csv = format::parse_csv(line + "\n0" + std::string(commas, ',') + "\n", "");
-      return std::any_of(csv.columns.begin(), csv.columns.end(),
-                         [](const format::CsvColumn& column) { return !column.unit.empty(); });
+      const bool units = std::any_of(csv.columns.begin(), csv.columns.end(),
+                                     [](const format::CsvColumn& column) { return !column.unit.empty(); });
+      return units && has_reading(csv.columns);
     } catch (const text::InputError&) {
       return false;
     }

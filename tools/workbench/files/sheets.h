@@ -7,8 +7,8 @@
 
 namespace vernier::workbench {
 
-/// True if the first line of a text is that of a measurement file: names with units, separated by commas. A
-/// text with another first line may be a spreadsheet.
+/// True if the first line of a text is that of a measurement file: names with units, separated by commas, one
+/// of them a reading. A text with another first line may be a spreadsheet.
 bool begins_as_measurement(const std::string& text);
 
 /// Returns how a spreadsheet is read, as JSON: {how, sheet, sheets: names of all sheets of a workbook,
