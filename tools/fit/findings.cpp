@@ -20,6 +20,7 @@
 #include "tools/format/units.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/median.h"
+#include "tools/model/chain/travel.h"
 
 namespace vernier::fit {
 namespace {
@@ -289,6 +290,28 @@ void add_axes_that_stood(const model::Machine& machine, const model::FitRecord& 
                    stood == 1 ? "One axis" : fmt::format("{} axes", stood), positions)});
 }
 
+/// The rows with a position outside the travel that the machine file states: the file is of another machine,
+/// or the positions have another zero or unit.
+void add_rows_outside_travel(const model::Machine& machine, const model::Measurement& m,
+                             std::vector<model::FitRecord::Finding>& list) {
+  std::string axes;
+  std::size_t most = 0;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    const std::size_t outside = model::rows_outside_travel(machine.axes[a], m.states.axis[a]);
+    if (outside == 0) continue;
+    most = std::max(most, outside);
+    axes += fmt::format("{}{} ({:g} to {:g}) in {} rows", axes.empty() ? "" : ", ", machine.axes[a].name,
+                        *machine.axes[a].min, *machine.axes[a].max, outside);
+  }
+  if (most == 0) return;
+  list.push_back(
+      {kOutsideTravel, static_cast<double>(most),
+       fmt::format("Positions are outside the travel of the machine file: {}, of {} rows. The file "
+                   "describes another machine, or the positions have another zero or unit: correct "
+                   "min and max of the axis, or take the file of this machine.",
+                   axes, m.rows())});
+}
+
 }  // namespace
 
 bool repeats_in_other_runs(const model::Measurement& m) {
@@ -337,6 +360,7 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                                 "axes, at the position of the axes and not where the probe touched.",
                                 names)});
   add_axes_that_stood(result.machine, record, list);
+  add_rows_outside_travel(result.machine, m, list);
   const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],
                          1e3 * record.discrepancy_mm[2]);
   if (lack_um.maxCoeff() > 0) {

@@ -30,8 +30,9 @@ Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurem
 /// its size, and whose own error no reading shows; value 0), `far-from-nominal` (a fit of touches gave
 /// another machine than that of the file), `flatness-assumed` (a probe beside the tool point touched a
 /// plane of unknown position, and no other reading determines a bow of the axes over this plane; value 0),
-/// `stood-still` (number of axes that had one position in all fit rows, while others moved). `record`: the
-/// fit record, complete except for the findings.
+/// `stood-still` (number of axes that had one position in all fit rows, while others moved),
+/// `outside-travel` (number of rows with a position outside the travel of its axis). `record`: the fit
+/// record, complete except for the findings.
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);
 
@@ -40,6 +41,9 @@ inline constexpr const char* kFlatnessAssumed = "flatness-assumed";
 
 /// Code of the finding that an axis had one position in all fit rows.
 inline constexpr const char* kStoodStill = "stood-still";
+
+/// Code of the finding that rows have positions outside the travel of an axis.
+inline constexpr const char* kOutsideTravel = "outside-travel";
 
 /// Without a column setup each run is a set-up of its own, and then equal targets of two runs are no repeats.
 /// True if the noise of the readings is unknown for this reason alone.

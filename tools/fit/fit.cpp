@@ -11,6 +11,7 @@
 
 #include "tools/fit/convention.h"
 #include "tools/fit/coverage/alternatives.h"
+#include "tools/fit/coverage/far_rows.h"
 #include "tools/fit/coverage/moved.h"
 #include "tools/fit/coverage/unmeasured.h"
 #include "tools/fit/coverage/unseen_turns.h"
@@ -196,6 +197,7 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
                         left_mm(result), result.reach_mm)
           : fmt::format("the residual of the nominal machine is {:.3g} mm in a measured box of +- {:.3g} mm",
                         result.misfit_mm, result.reach_mm);
+  if (mistake.empty()) mistake = far_rows(machine, measurement);
   if (mistake.empty() && !result.converged)
     mistake = blame_of(result, end.converged ? Eigen::VectorXd() : end.last_step, readings);
   if (!mistake.empty()) result.absurd += ": " + mistake;

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "tools/fit/coverage/pose_readings.h"
 #include "tools/fit/coverage/unseen_turns.h"
@@ -302,31 +304,69 @@ model::Machine set_up_anywhere(const model::Machine& machine, const model::Measu
 
 std::string OtherSetUp::sentence() const {
   return fmt::format(
-      "{}: the model does not contain the set-up of this file (residual {:.3g} um; with a separate set-up "
-      "{:.3g} um)",
-      file, before_um, own_um);
+      "{}: the model does not contain the set-up of {} (residual {:.3g} um; with a separate set-up {:.3g} "
+      "um){}",
+      file, rows.empty() ? "this file" : rows, before_um, own_um,
+      rows.empty()
+          ? ""
+          : "; if the instrument or its frame moved before these rows, give them a label of their own "
+            "in the column setup, or write them into a file of their own");
 }
+
+namespace {
+
+/// Rows that may have one set-up: their number in the measurement, and what they are.
+struct RowGroup {
+  std::size_t file = 0;
+  std::string rows;  // empty: all rows of the file
+  std::vector<std::size_t> keep;
+};
+
+/// Each file; and of a file with both roles its check rows, of a file with several runs each run.
+std::vector<RowGroup> groups_of_rows(const model::Measurement& m) {
+  constexpr std::size_t kMostRuns = 20;  // more runs are labels of the rows
+  std::vector<RowGroup> groups;
+  for (std::size_t file = 0; file < m.files.size(); ++file) {
+    RowGroup all{file, "", {}}, check{file, "the check rows", {}};
+    std::map<std::size_t, std::vector<std::size_t>> runs;
+    for (std::size_t row = 0; row < m.rows(); ++row) {
+      if (m.file[row] != file) continue;
+      all.keep.push_back(row);
+      if (m.check[row] != 0) check.keep.push_back(row);
+      if (!m.states.run.empty()) runs[m.states.run[row]].push_back(row);
+    }
+    const bool both = !check.keep.empty() && check.keep.size() < all.keep.size();
+    groups.push_back(std::move(all));
+    if (both) groups.push_back(std::move(check));
+    if (runs.size() < 2 || runs.size() > kMostRuns) continue;
+    for (auto& [run, keep] : runs)
+      groups.push_back({file, fmt::format("run {}", m.states.run_names[run]), std::move(keep)});
+  }
+  return groups;
+}
+
+}  // namespace
 
 std::vector<OtherSetUp> files_set_up_elsewhere(const model::Machine& machine, const model::Measurement& m) {
   // Above the errors of a machine tool or robot; the decrease that only another set-up explains.
   constexpr double kFar_um = 500, kFalls = 20;
   constexpr std::size_t kLeast = 9;  // readings: a set-up has six numbers
   std::vector<OtherSetUp> list;
-  for (std::size_t file = 0; file < m.files.size(); ++file) {
-    std::vector<std::size_t> keep;
-    for (std::size_t row = 0; row < m.rows(); ++row)
-      if (m.file[row] == file) keep.push_back(row);
-    if (keep.empty()) continue;
-    model::Measurement rows = model::select_rows(m, keep);
+  std::set<std::size_t> named;  // files that a sentence names
+  for (RowGroup& group : groups_of_rows(m)) {
+    if (group.keep.empty() || named.contains(group.file)) continue;
+    model::Measurement rows = model::select_rows(m, group.keep);
     rows.check.assign(rows.check.size(), 0);
     if (rows.observations.size() < kLeast) continue;
     const auto rms_um = [&](const model::Machine& one) {
       return role_statistics(rows, residuals(one, rows), false).rms_um.value_or(0);
     };
-    OtherSetUp one{m.files[file], rms_um(machine), 0};
+    OtherSetUp one{m.files[group.file], std::move(group.rows), rms_um(machine), 0};
     if (one.before_um < kFar_um) continue;
     one.own_um = rms_um(set_up_anywhere(machine, rows));
-    if (kFalls * one.own_um < one.before_um) list.push_back(std::move(one));
+    if (kFalls * one.own_um >= one.before_um) continue;
+    named.insert(group.file);
+    list.push_back(std::move(one));
   }
   return list;
 }

@@ -16,7 +16,9 @@
 #include "tools/import/sizes/outlying_cells.h"
 #include "tools/lint/dense_points.h"
 #include "tools/lint/direction_order.h"
+#include "tools/lint/run_order.h"
 #include "tools/model/chain/thing_shape.h"
+#include "tools/model/chain/travel.h"
 #include "tools/text/numbers.h"
 #include "tools/text/similar.h"
 
@@ -39,6 +41,7 @@ class Meaning {
     for (const LintColumn& column : table_.columns)
       if (names_.is_of_axis(column.name, format::AxisQuantity::kSense))
         look_at_directions(table_, column, names_, findings_);
+    look_at_signs_of_runs(table_, names_, findings_);
     look_at_normals();
     look_at_repeats();
     look_at_scale();
@@ -120,11 +123,12 @@ class Meaning {
     if (machine_ == nullptr) return;
     const model::Axis& axis = machine_->axes[*machine_->find_axis(column.name)];
     if (!axis.min || !axis.max) return;
-    const double travel = *axis.max - *axis.min, slack = 0.01 * travel;
-    std::size_t outside = 0, first = 0;
-    for (std::size_t row = 0; row < table_.rows.size(); ++row)
-      if (column.value[row] < *axis.min - slack || column.value[row] > *axis.max + slack)
-        if (outside++ == 0) first = row;
+    const double travel = *axis.max - *axis.min, slack = model::kTravelSlack * travel;
+    std::size_t first = 0;
+    const std::size_t outside = model::rows_outside_travel(
+        axis,
+        Eigen::Map<const Eigen::ArrayXd>(column.value.data(), static_cast<Eigen::Index>(column.value.size())),
+        &first);
     const auto close = [&](double factor) {
       return least * factor >= *axis.min - slack && most * factor <= *axis.max + slack &&
              (most - least) * factor > 0.2 * travel;

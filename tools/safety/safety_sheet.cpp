@@ -17,6 +17,7 @@
 #include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain/chain.h"
+#include "tools/model/chain/travel.h"
 #include "tools/model/chain/work_poses.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/parameters.h"
@@ -245,6 +246,7 @@ class Judge {
     };
     for (const model::FitRecord::Range& measured : machine_.fitted->measured) {
       if (const auto axis = machine_.find_axis(measured.name)) {
+        add_outside_travel(machine_.axes[*axis], measured, axes);
         const auto range = model::work_range(machine_, *axis);
         if (!range || !acts(machine_, {model::SymbolKind::kAxis, *axis})) continue;
         const bool stood = !(measured.max > measured.min);
@@ -275,6 +277,20 @@ class Judge {
     double share = 0;  // of the measured range
     std::string text;
   };
+
+  /// The part of the measured range of a linear axis that is outside its travel, as a share of the travel:
+  /// readings of another machine. A rotary axis may have counted whole turns.
+  static void add_outside_travel(const model::Axis& axis, const model::FitRecord::Range& measured,
+                                 std::vector<Outside>& list) {
+    if (axis.rotary || !axis.min || !axis.max || !(*axis.max > *axis.min)) return;
+    const double beyond = std::max(0.0, *axis.min - measured.min) + std::max(0.0, measured.max - *axis.max);
+    if (beyond <= model::kTravelSlack * (*axis.max - *axis.min)) return;
+    list.push_back({beyond / (*axis.max - *axis.min),
+                    fmt::format("axis {}, measured from {:g} to {:g}, outside its travel {:g} to {:g}: the "
+                                "file describes another machine, or the positions have another zero or unit; "
+                                "correct min and max of the axis, or take the file of this machine",
+                                axis.name, measured.min, measured.max, *axis.min, *axis.max)});
+  }
 
   /// The value of the rule is the largest share; its culprit names all that exceed the limit, largest first.
   void add_outside(SafetyRule rule, std::vector<Outside> list) {

@@ -8,8 +8,10 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "tests/support/machines.h"
+#include "tools/fit/coverage/far_rows.h"
 #include "tools/fit/coverage/reach.h"
 #include "tools/fit/coverage/unmeasured.h"
 #include "tools/fit/fit.h"
@@ -217,6 +219,40 @@ TEST(OtherSetUp, AFileOfAnotherSetUpIsNamedWithBothResiduals) {
   EXPECT_LT(found[0].own_um, 3);
   EXPECT_NE(found[0].sentence().find("s.csv: the model does not contain the set-up of this file"),
             std::string::npos);
+}
+
+TEST(OtherSetUp, CheckRowsOfAFileFromAnotherSetUpAreNamed) {
+  const Machine bridge = parse_machine(support::bridge_text(7), "bridge.xml");
+  Measurement m = survey_of(bridge, 9, [](int) { return Eigen::Vector3d::Zero(); });
+  // GIVEN every third row as a check row, read after the instrument moved by 12.5 mm
+  for (std::size_t row = 0; row < m.rows(); ++row) m.check[row] = row % 3 == 0 ? 1 : 0;
+  EXPECT_TRUE(files_set_up_elsewhere(bridge, m).empty());
+  for (Observation& o : m.observations)
+    o.value += o.kind == ObservationKind::kX && m.check[o.row] != 0 ? 12.5 : 0;
+  // THEN these rows are named, and not the file
+  const std::vector<OtherSetUp> found = files_set_up_elsewhere(bridge, m);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].rows, "the check rows");
+  EXPECT_NE(found[0].sentence().find("does not contain the set-up of the check rows"), std::string::npos)
+      << found[0].sentence();
+}
+
+TEST(FarRows, TwoInterchangedPointsAreNamed) {
+  const Machine bridge = parse_machine(support::bridge_text(7), "bridge.xml");
+  Measurement m = survey_of(bridge, 9, [](int) { return Eigen::Vector3d::Zero(); });
+  EXPECT_EQ(far_rows(bridge, m), "");
+  constexpr std::size_t kFirst = 40, kKinds = 3;
+  for (std::size_t k = 0; k < kKinds; ++k)
+    std::swap(m.observations[kKinds * kFirst + k].value, m.observations[kKinds * (kFirst + 1) + k].value);
+  const std::string found = far_rows(bridge, m);
+  EXPECT_EQ(found.find("s.csv:42 ("), 0U) << found;
+  EXPECT_NE(found.find(", s.csv:43 ("), std::string::npos) << found;
+  EXPECT_NE(found.find("mm) are far from the rest"), std::string::npos) << found;
+  // Readings that have no rule name no row.
+  Measurement shifted = m;
+  for (std::size_t i = 0; i + kKinds < m.observations.size(); ++i)
+    shifted.observations[i].value = m.observations[i + kKinds].value;
+  EXPECT_EQ(far_rows(bridge, shifted), "");
 }
 
 TEST(FitFindings, AReversalErrorIsNoDisturbance) {

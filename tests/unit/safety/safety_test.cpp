@@ -125,6 +125,32 @@ TEST(SafetySheet, JudgesWhereItWorksAgainstWhereItWasMeasured) {
   EXPECT_TRUE(safety_sheet(fitted).ok()) << safety_sheet(fitted).refusal();
 }
 
+TEST(SafetySheet, RowsOutsideTheTravelAreOfAnotherMachine) {
+  const std::string statics = "<alpha value=\"0\" nominal=\"0\" unit=\"rad\"/>";
+  Machine truth = small_machine(statics);
+  truth.statics[0].value = 5e-5;
+  Machine model = small_machine(statics);
+  const Measurement m = survey(truth, model, 1e-3);
+  const auto outside = [](const Machine& machine) {
+    const auto& found = machine.fitted->findings;
+    const auto at = std::find_if(found.begin(), found.end(),
+                                 [](const FitRecord::Finding& one) { return one.code == "outside-travel"; });
+    return at == found.end() ? std::string() : at->text;
+  };
+  EXPECT_EQ(outside(fit::fit(model, m).machine), "");
+  // GIVEN the file of a smaller machine
+  model.axes[0].max = 200;
+  const Machine fitted = fit::fit(model, m).machine;
+  EXPECT_NE(outside(fitted).find("Positions are outside the travel of the machine file: X (0 to 200) in "),
+            std::string::npos)
+      << outside(fitted);
+  const SafetyFinding& refused = finding(safety_sheet(fitted), SafetyRule::kMeasuredRange);
+  EXPECT_FALSE(refused.ok);
+  EXPECT_NE(refused.culprit.find("outside its travel 0 to 200: the file describes another machine"),
+            std::string::npos)
+      << refused.culprit;
+}
+
 TEST(SafetySheet, AnAxisThatStoodStillCountsOnlyIfACorrectionDependsOnIt) {
   // GIVEN a fitted scale error of X, and rows in which Z stood still
   const std::string statics =

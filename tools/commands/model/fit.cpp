@@ -118,7 +118,10 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
   const std::vector<results::ChainTerm> chain = results::chain_expressions(result.machine);
   for (const fit::ParameterEstimate& item : result.estimates) {
     const std::string note = results::reversal_note(chain, item.name, item.value, item.unit);
-    fmt::print(out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}{}\n", item.name, item.value, item.std, item.unit,
+    // A value far below its uncertainty is the arithmetic's zero.
+    constexpr double kNothing = 1e-9;  // of the standard uncertainty
+    const double value = std::abs(item.value) < kNothing * item.std ? 0 : item.value;
+    fmt::print(out, "{:<24} {:>15.6g} {:>12.2g}  {:<6} {}{}\n", item.name, value, item.std, item.unit,
                item.from != fit::Origin::kPrior ? fit::origin_name(item.from)
                : item.moved()                   ? "hardly measured; as uncertain as nominal +- scale"
                                                 : "not measured; stays at nominal +- scale",
@@ -250,8 +253,9 @@ void run_fit(const FitArguments& arguments) {
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
   if (!tool.empty()) fmt::print(stderr, "note: {}\n", tool);
   for (const fit::OtherSetUp& one : fit::files_set_up_elsewhere(result.machine, m))
-    fmt::print(stderr, "note: {}; to fit this set-up, give at least three rows of the file the role fit\n",
-               one.sentence());
+    fmt::print(
+        stderr, "note: {}{}\n", one.sentence(),
+        one.rows.empty() ? "; to fit this set-up, give at least three rows of the file the role fit" : "");
   for (const lint::DensePoints& points : lint::dense_points(result.machine, positions_of(m), readings_of(m)))
     fmt::print(stderr, "note: {}: {}\n", lint::dense_points_text(points), lint::dense_points_remedy(points));
   print_result(human_stream(arguments.json), result, m);
