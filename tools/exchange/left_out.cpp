@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <functional>
 #include <random>
+#include <utility>
+
+#include "tools/maths/factors.h"
 
 namespace vernier::exchange {
 namespace {
@@ -99,6 +103,48 @@ std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t 
     for (model::Column& since : s.since) sampler.fill(since, 0, kSince_mm);
   });
   look("time", [&](model::States& s) { s.time = model::Column::LinSpaced(s.time.size(), 0, kTime_s); });
+  return result;
+}
+
+std::vector<LeftOut> beyond_straight_axes(const model::Machine& machine, const model::States& at,
+                                          bool heights) {
+  constexpr Index kPositions = 401;  // more than four a period of the usual screws
+  std::vector<LeftOut> result;
+  const auto add = [&](std::string what, double um) {
+    if (um > kNothing_um) result.push_back({std::move(what), um});
+  };
+  const auto positions_of = [&](std::size_t moved) {
+    model::States states = model::select_states(at, std::vector<std::size_t>(kPositions, 0));
+    const model::Axis& one = machine.axes[moved];
+    states.axis[moved] = model::Column::LinSpaced(kPositions, one.min.value_or(-kReach_mm_or_deg),
+                                                  one.max.value_or(kReach_mm_or_deg));
+    for (model::Column& direction : states.direction) direction.setConstant(1);
+    return states;
+  };
+  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
+    const std::string& name = machine.axes[axis].name;
+    for (std::size_t moved = 0; moved < machine.axes.size(); ++moved) {
+      model::States states = positions_of(moved);
+      const model::Column forth = kinematics::first_order_offset(machine, states)[axis];
+      if (moved == axis) {
+        states.direction[axis].setConstant(-1);
+        const model::Column back = kinematics::first_order_offset(machine, states)[axis];
+        add("reversal error (backlash) of " + name, maths::kUmPerMm * (forth - back).abs().maxCoeff());
+      }
+      if (heights && name == "Z" && moved != axis) continue;
+      Eigen::MatrixXd line(kPositions, 2);
+      line.col(0).setOnes();
+      line.col(1) = states.axis[moved].matrix();
+      const Eigen::VectorXd rest = forth.matrix() - line * line.colPivHouseholderQr().solve(forth.matrix());
+      const double um = maths::kUmPerMm * rest.cwiseAbs().maxCoeff();
+      if (moved == axis)
+        add("positioning error of " + name + " that is no scale (lead error, cyclic error)", um);
+      else
+        add("error along " + name + " over the travel of " + machine.axes[moved].name +
+                " that is no squareness (straightness)",
+            um);
+    }
+  }
   return result;
 }
 

@@ -27,6 +27,14 @@ inline constexpr double kNothing_um = 0.01;
 std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t axis,
                                      const model::States& at);
 
+/// Finds the errors by kind that a format of straight axes (squareness and scale) cannot hold, of the
+/// first-order offset of each axis: the reversal error, the part along its own axis that is no scale (lead
+/// and cyclic errors), and the part along each other axis that is no squareness (straightness). The other
+/// axes are in the middle of their ranges. `heights`: true if the format has a mesh of heights, so that Z
+/// along X and Y is no part of the list.
+std::vector<LeftOut> beyond_straight_axes(const model::Machine& machine, const model::States& at,
+                                          bool heights);
+
 /// Returns deviations that remain if all tables are zero (position errors, scale factors, terms of the user):
 /// the largest value at random states.
 std::vector<LeftOut> beyond_tables(const model::Machine& machine, const model::States& at);

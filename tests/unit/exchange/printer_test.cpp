@@ -9,6 +9,7 @@
 #include <random>
 #include <sstream>
 
+#include "tools/exchange/left_out.h"
 #include "tools/exchange/printer/correction.h"
 #include "tools/exchange/printer/firmware_files.h"
 #include "tools/maths/decompositions.h"
@@ -191,6 +192,25 @@ TEST(PrinterErrors, OfATemperatureAreStatedAtTheEndsOfItsRange) {
       << left[0].what;
   // 80 um between the middle and the edge, whose mean is 26.7 um; homing removes the growth.
   EXPECT_NEAR(left[0].um, 80 - 80.0 / 3, 2);
+}
+
+TEST(PrinterErrors, OfKindsThatAPrinterCannotCorrectAreNamed) {
+  const Machine machine = parse_machine(R"xml(<machine name="kinds"><variables>
+  <static><b value="0.008" nominal="0"/><w value="0.003" nominal="0"/><s value="0.01" nominal="0"/></static>
+  <machineaxes><X min="0" max="200"/><Y min="0" max="200"/><Z min="0" max="150"/></machineaxes></variables>
+  <transforms branch="tool"><sixdof n="1" X="X+b*dirX+w*sin(X/2)" Y="Y+s*(X-100)*(X-100)/10000"/>
+  <sixdof n="2" Z="Z"/></transforms></machine>)xml",
+                                        "kinds.xml");
+  const std::vector<LeftOut> left = beyond_straight_axes(machine, at_rest(machine), true);
+  ASSERT_EQ(left.size(), 3U);
+  EXPECT_EQ(left[0].what, "reversal error (backlash) of X");
+  EXPECT_NEAR(left[0].um, 16, 0.1);
+  EXPECT_EQ(left[1].what, "positioning error of X that is no scale (lead error, cyclic error)");
+  EXPECT_NEAR(left[1].um, 3, 0.3);
+  EXPECT_EQ(left[2].what, "error along Y over the travel of X that is no squareness (straightness)");
+  EXPECT_NEAR(left[2].um, 20.0 / 3, 0.5);  // a parabola of 10 um beside the best straight line
+  // Squareness, scale and a bed that follows both axes are in the files.
+  EXPECT_TRUE(beyond_straight_axes(printer(), at_rest(printer()), true).empty());
 }
 
 TEST(KlipperFiles, OfTwoProfilesHaveTwoNames) {

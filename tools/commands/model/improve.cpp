@@ -430,9 +430,15 @@ class Improver {
           safety::safety_sheet(model::parse_machine(model_steps_.back().text, model_steps_.back().file));
       json["safe_to_run"] = results::safe_to_run_json(sheet);
       const std::vector<std::string> unknown = sheet.not_known();
+      // A model that lacks an effect is safe where its rules are met, and is not complete.
+      const bool complete = last_["verdict"] == diagnose::verdict_name(diagnose::Verdict::kConsistent);
       fmt::print(
-          out_, "{}{}\n", sheet.ok() ? "safe to run: every rule of the safety sheet is met" : sheet.refusal(),
-          unknown.empty() ? "" : fmt::format("; without a value, not judged: {}", fmt::join(unknown, ", ")));
+          out_, "{}{}{}\n",
+          sheet.ok() ? "safe to run: every rule of the safety sheet is met" : sheet.refusal(),
+          unknown.empty() ? "" : fmt::format("; without a value, not judged: {}", fmt::join(unknown, ", ")),
+          sheet.ok() && !complete
+              ? "; the sheet does not judge whether the model is complete (see the verdict)"
+              : "");
     } catch (const text::InputError& error) {
       fmt::print(out_, "safe to run: not judged: {}\n", error.what());
     }

@@ -250,6 +250,12 @@ void refuse_empty(const exchange::PrinterCorrection& correction, const model::Ma
                      : remedy));
 }
 
+/// A deviation for people: below a hundredth of a micrometre the digits are those of the arithmetic.
+std::string shown_um(double um) {
+  return um < exchange::kNothing_um ? fmt::format("below {}", exchange::kNothing_um)
+                                    : fmt::format("{:.4g}", um);
+}
+
 void print_errors(const PrinterArguments& arguments, const PrinterModel& model,
                   const exchange::PrinterErrors& errors,
                   const std::optional<exchange::TouchResidual>& touches) {
@@ -260,11 +266,12 @@ void print_errors(const PrinterArguments& arguments, const PrinterModel& model,
     fmt::print(out, "the heights follow the {} \"{}\", X {:g} to {:g} mm, Y {:g} to {:g} mm\n",
                bed->shape ? "bed" : "plane", bed->name, bed->low[0], bed->high[0], bed->low[1], bed->high[1]);
   if (touches)
-    fmt::print(out,
-               "deviation of the height at the {} touches of the {}: {:.4g} um rms without the files, {:.4g} "
-               "um rms with the files\n",
-               touches->touches, touches->of_nozzle ? "nozzle" : "probe", touches->before_um,
-               touches->after_um);
+    fmt::print(
+        out,
+        "deviation of the height at the {} touches of the {}: {} um rms without the files, {} um rms with "
+        "the files\n",
+        touches->touches, touches->of_nozzle ? "nozzle" : "probe", shown_um(touches->before_um),
+        shown_um(touches->after_um));
   if (model.follows_touches)
     fmt::print(
         out,
@@ -325,6 +332,9 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   print_straight_parts(human_stream(common.json), correction);
   Json extra = errors_json(errors);
   std::vector<exchange::LeftOut> left = remaining(errors.after_um);
+  if (!follows_touches)
+    for (exchange::LeftOut& one : exchange::beyond_straight_axes(machine, at, features.mesh))
+      left.push_back(std::move(one));
   add_unmeasured(left, correction);
   if (unmeasured_heights) {
     left.push_back(

@@ -25,7 +25,8 @@ struct Allowed {
 /// the project, or keep no result.
 constexpr Allowed kAllowed[] = {
     {"new", false, true,
-     "type axis tool-side work-side name urdf tip reading errors artefact output measurements"},
+     "type axis stations tool-side work-side centre tool name urdf tip reading errors artefact output "
+     "measurements"},
     {"import table", false, true,
      "file separator decimal skip table sheet unit sign column deviation leave set fill one-motion "
      "check-every output! save-profile"},

@@ -17,7 +17,7 @@ function newMachine(choose) {
     type = chosen;
     axes.value = usual;
   });
-  const options = moreOptions('new', ['type', 'axis', 'output', 'measurements']);
+  const options = moreOptions('new', ['type', 'axis', 'name', 'output', 'measurements']);
   const make = button(
     'Make it',
     () =>
@@ -30,6 +30,7 @@ function newMachine(choose) {
           command: 'new',
           type,
           ...(axis.length ? { axis } : {}),
+          ...(name.value.trim() ? { name: name.value.trim() } : {}),
           ...options.values(),
           output,
           measurements: survey,

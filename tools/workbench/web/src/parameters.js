@@ -8,16 +8,24 @@ import { on, store } from './store.js';
 const kFrom = {
   data: ['measured', 'the readings determine it'],
   convention: ['not determined', 'part of a combination that the readings do not determine: set to the value nearest nominal'],
+  combination: ['measured in a combination', 'the readings determine the value, beside a small part that is set to the value nearest nominal'],
   prior: ['not measured', 'nominal, give or take what is plausible'],
 };
 const kShown = 500;
+
+/** What a parameter rests on. A parameter of a combination whose value is far above its uncertainty is measured. */
+const kFarAbove = 4; // standard uncertainties: a difference that chance does not make
+function origin(one) {
+  if (one.from !== 'convention' || one.std === null) return one.from;
+  return Math.abs(one.value - (one.nominal ?? 0)) > kFarAbove * one.std ? 'combination' : 'convention';
+}
 
 /** Every free parameter with its value, its uncertainty, and what it rests on. */
 export function parameterPanel() {
   const body = el('tbody', { id: 'parameters' }),
     words = el('p', { class: 'note' });
   const row = (one) => {
-    const [label, why] = kFrom[one.from] ?? ['not fitted', 'no fit of this file knows it, or its value was changed since'];
+    const [label, why] = kFrom[origin(one)] ?? ['not fitted', 'no fit of this file knows it, or its value was changed since'];
     return el(
       'tr',
       { 'data-from': one.from ?? '' },
@@ -38,9 +46,9 @@ export function parameterPanel() {
     if (asked !== store.rows) return;
     store.parameters = list;
     body.replaceChildren(...list.slice(0, kShown).map(row));
-    const count = (from) => list.filter((one) => one.from === from).length;
+    const count = (from) => list.filter((one) => origin(one) === from).length;
     words.textContent =
-      `${list.length} free: ${count('data')} measured, ${count('convention')} not determined (nearest nominal), ${count('prior')} not measured, ` +
+      `${list.length} free: ${count('data')} measured, ${count('combination')} measured in a combination, ${count('convention')} not determined (nearest nominal), ${count('prior')} not measured, ` +
       `${count(null)} not fitted in this file.${list.length > kShown ? ` The first ${kShown} are shown.` : ''}`;
   });
   const head = ['parameter', 'value', '± std. uncertainty', 'unit', 'nominal', 'rests on'];
