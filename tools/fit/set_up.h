@@ -25,8 +25,8 @@ model::Machine set_up(const model::Machine& machine, const model::Measurement& r
 /// be fitted, use set_up(). A rotated set-up could hide swapped columns of a flat survey.
 model::Machine set_up_anywhere(const model::Machine& machine, const model::Measurement& measured);
 
-/// A measurement file, or a part of its rows, whose set-up is not in the machine file. The members are the rms
-/// residuals of these rows with the set-up of the machine file, and with a separate set-up, um.
+/// A measurement file, or a part of its rows, whose set-up is not in the machine file. The members are the
+/// rms residuals of these rows with the set-up of the machine file, and with a separate set-up, um.
 struct OtherSetUp {
   std::string file;
   std::string rows;  // "the check rows", "run 2"; empty: all rows of the file
@@ -36,9 +36,8 @@ struct OtherSetUp {
 };
 
 /// Returns the files whose residual is above half a millimetre, if a separate set-up reduces this residual to
-/// a twentieth or less; the check rows or one run of a file, if they alone do so. `machine`: the fitted or the
-/// given machine. Check rows are included. Only length
-/// readings are used for this test of the set-up.
+/// a twentieth or less; the check rows or one run of a file, if they alone do so. `machine`: the fitted or
+/// the given machine. Check rows are included. Only length readings are used for this test of the set-up.
 std::vector<OtherSetUp> files_set_up_elsewhere(const model::Machine& machine, const model::Measurement& m);
 
 }  // namespace vernier::fit

@@ -93,8 +93,9 @@ void print_tables(const ExchangeArguments& common, const exchange::ControllerTab
                   const exchange::ControllerErrors& errors) {
   std::FILE* out = human_stream(common.json);
   for (const exchange::ControllerTable& table : tables.tables)
-    fmt::print(out, "{} by the position of {}: {} points, {:.6g} mm apart\n", exchange::kLetters[table.output],
-               exchange::kLetters[table.input], table.forward.size(), table.step);
+    fmt::print(out, "{} by the position of {}: {} points, {:.6g} mm apart\n",
+               exchange::kLetters[table.output], exchange::kLetters[table.input], table.forward.size(),
+               table.step);
   for (std::size_t i = 0; i < 3; ++i)
     if (tables.between_um[i] > common.tolerance_um)
       fmt::print(out, "note: the error between the points of {} is {:.3g} um, the tolerance is {} um\n",
