@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <functional>
 #include <random>
 #include <utility>
 
+#include "tools/maths/decompositions.h"
 #include "tools/maths/factors.h"
 
 namespace vernier::exchange {
@@ -135,7 +135,8 @@ std::vector<LeftOut> beyond_straight_axes(const model::Machine& machine, const m
       Eigen::MatrixXd line(kPositions, 2);
       line.col(0).setOnes();
       line.col(1) = states.axis[moved].matrix();
-      const Eigen::VectorXd rest = forth.matrix() - line * line.colPivHouseholderQr().solve(forth.matrix());
+      const Eigen::VectorXd rest =
+          forth.matrix() - line * maths::least_norm(line, Eigen::VectorXd(forth.matrix()));
       const double um = maths::kUmPerMm * rest.cwiseAbs().maxCoeff();
       if (moved == axis)
         add("positioning error of " + name + " that is no scale (lead error, cyclic error)", um);

@@ -197,7 +197,8 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
                         left_mm(result), result.reach_mm)
           : fmt::format("the residual of the nominal machine is {:.3g} mm in a measured box of +- {:.3g} mm",
                         result.misfit_mm, result.reach_mm);
-  if (mistake.empty()) mistake = far_rows(machine, measurement);
+  if (mistake.empty())
+    mistake = far_rows(measurement, [&](const model::Measurement& rows) { return set_up(machine, rows); });
   if (mistake.empty() && !result.converged)
     mistake = blame_of(result, end.converged ? Eigen::VectorXd() : end.last_step, readings);
   if (!mistake.empty()) result.absurd += ": " + mistake;

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "tools/fit/least_squares/statistics.h"
-#include "tools/fit/set_up.h"
 #include "tools/maths/median.h"
 
 namespace vernier::fit {
@@ -36,15 +35,16 @@ std::vector<double> sizes_of(const model::Machine& machine, const model::Measure
 
 }  // namespace
 
-std::string far_rows(const model::Machine& machine, const model::Measurement& m) {
+std::string far_rows(const model::Measurement& m,
+                     const std::function<model::Machine(const model::Measurement& rows)>& posed) {
   if (m.rows() < kFewestRows) return {};
-  std::vector<double> sizes = sizes_of(set_up(machine, m), m);
+  std::vector<double> sizes = sizes_of(posed(m), m);
   std::vector<std::size_t> near;
   const double first = maths::median(sizes);
   for (std::size_t row = 0; row < sizes.size(); ++row)
     if (sizes[row] <= kTrim * first) near.push_back(row);
   if (near.size() < kFewestRows) return {};
-  sizes = sizes_of(set_up(machine, model::select_rows(m, near)), m);
+  sizes = sizes_of(posed(model::select_rows(m, near)), m);
   const double usual = maths::median(sizes);
   std::vector<std::size_t> far;
   for (std::size_t row = 0; row < sizes.size(); ++row)

@@ -105,7 +105,7 @@ std::string named_triple(const sheet::SheetTable& table, const std::vector<Sheet
     const Coordinate coordinate = coordinate_of(table.headings[k].name);
     if (coordinate.of != 0) triples[coordinate.prefix].emplace(coordinate.of, k);
   }
-  constexpr std::size_t kCoordinates = 3;
+  constexpr std::size_t kCoordinates = 3;  // x, y and z
   std::string options;
   for (const auto& [prefix, triple] : triples) {
     if (triple.size() != kCoordinates) continue;
