@@ -30,6 +30,12 @@ void leave_out(model::Measurement& rows, const std::vector<ColumnRole>& roles);
 /// Returns the mean of the cells of an undeclared column that have a value; 0 if none has one.
 double mean_of_cells(const model::CandidateInput& candidate);
 
+/// Returns one note for each measurement file that has no approach direction of a moving axis, although
+/// another file of the survey has it. The model then predicts no reversal error in this file, and the file
+/// contradicts a reversal error that the other files show.
+std::vector<std::string> notes_of_missing_directions(const model::Machine& machine,
+                                                     const model::Measurement& rows);
+
 /// Gives every undeclared column a value in every row, so that all models of a search are fitted to the same
 /// rows. In the rows of a file without the column, the column has the reference of an input
 /// (usual_reference()), as an input that a file does not record. Rows with an empty cell in a file that has

@@ -198,7 +198,7 @@ TEST(PrinterErrors, OfKindsThatAPrinterCannotCorrectAreNamed) {
   const Machine machine = parse_machine(R"xml(<machine name="kinds"><variables>
   <static><b value="0.008" nominal="0"/><w value="0.003" nominal="0"/><s value="0.01" nominal="0"/></static>
   <machineaxes><X min="0" max="200"/><Y min="0" max="200"/><Z min="0" max="150"/></machineaxes></variables>
-  <transforms branch="tool"><sixdof n="1" X="X+b*dirX+w*sin(X/2)" Y="Y+s*(X-100)*(X-100)/10000"/>
+  <transforms branch="tool"><sixdof n="1" X="X+b*dirX+w*sin(36*X)" Y="Y+s*(X-100)*(X-100)/10000"/>
   <sixdof n="2" Z="Z"/></transforms></machine>)xml",
                                         "kinds.xml");
   const std::vector<LeftOut> left = beyond_straight_axes(machine, at_rest(machine), true);

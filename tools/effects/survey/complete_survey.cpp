@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "tools/effects/probe_offset.h"
-#include "tools/effects/survey/missing_directions.h"
+#include "tools/effects/roles.h"
 #include "tools/model/file_set_ups.h"
 #include "tools/model/machine_reader.h"
 

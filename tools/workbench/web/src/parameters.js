@@ -8,7 +8,10 @@ import { on, store } from './store.js';
 const kFrom = {
   data: ['measured', 'the readings determine it'],
   convention: ['not determined', 'part of a combination that the readings do not determine: set to the value nearest nominal'],
-  combination: ['measured in a combination', 'the readings determine the value, beside a small part that is set to the value nearest nominal'],
+  combination: [
+    'measured in a combination',
+    'the readings determine the value, beside a small part that is set to the value nearest nominal',
+  ],
   prior: ['not measured', 'nominal, give or take what is plausible'],
 };
 const kShown = 500;
