@@ -198,8 +198,7 @@ std::string Explanation::sentence() const {
       return fmt::format(
           "The rows measured so far could distinguish the two effects (non-centrality {:.3g}, required "
           "{:.3g}), but {} explains these rows better than {} by only {:.3g}. Measure the same rows again: "
-          "if "
-          "the difference does not grow, neither effect is the whole cause.",
+          "if the difference does not grow, neither effect is the whole cause.",
           worse.now, worse.needed, better, other, lead);
     return fmt::format(
         "The rows measured so far already distinguish the two effects: {} explains the rows better than {} "

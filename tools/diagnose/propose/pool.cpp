@@ -58,16 +58,22 @@ bool has_period(const effects::Candidate& candidate) {
   return !scanned.empty() && (*scanned.begin()).kind == effects::UnknownKind::kPeriod;
 }
 
-/// A gravity moment about a joint depends on the positions of all joints after it.
-bool depends_on_no_other_axis(const model::Machine& machine, const effects::Candidate& candidate) {
+/// Calls visit(node) for each node of the terms of a candidate.
+template <class Visit>
+void walk_terms(const model::Machine& machine, const effects::Candidate& candidate, const Visit& visit) {
   model::Machine scratch = machine;
   effects::add_unknowns(scratch, candidate, {});
-  bool other = false;
   for (const effects::CandidateTerm& term : candidate.terms)
-    model::walk(*model::parse_expression_for(scratch, term.text), [&](const model::Expr& node) {
-      other = other || (node.op == model::Op::kSymbol && node.symbol.kind == model::SymbolKind::kAxis &&
-                        node.symbol.index != *candidate.choice.axis);
-    });
+    model::walk(*model::parse_expression_for(scratch, term.text), visit);
+}
+
+/// A gravity moment about a joint depends on the positions of all joints after it.
+bool depends_on_no_other_axis(const model::Machine& machine, const effects::Candidate& candidate) {
+  bool other = false;
+  walk_terms(machine, candidate, [&](const model::Expr& node) {
+    other = other || (node.op == model::Op::kSymbol && node.symbol.kind == model::SymbolKind::kAxis &&
+                      node.symbol.index != *candidate.choice.axis);
+  });
   return !other;
 }
 
@@ -84,16 +90,13 @@ bool carries_not(const effects::AxisPlaces& axes, const effects::Choice& choice)
 std::set<std::pair<int, std::size_t>> drivers_of(const model::Machine& machine,
                                                  const effects::Candidate& candidate) {
   std::set<std::pair<int, std::size_t>> drivers;
-  model::Machine scratch = machine;
-  effects::add_unknowns(scratch, candidate, {});
-  for (const effects::CandidateTerm& term : candidate.terms)
-    model::walk(*model::parse_expression_for(scratch, term.text), [&](const model::Expr& node) {
-      if (node.op == model::Op::kRunIs) drivers.insert({-1, 0});
-      if (node.op != model::Op::kSymbol) return;
-      const model::SymbolKind kind = node.symbol.kind;
-      if (kind == model::SymbolKind::kStatic || kind == model::SymbolKind::kAxis) return;
-      drivers.insert({static_cast<int>(kind), node.symbol.index});
-    });
+  walk_terms(machine, candidate, [&](const model::Expr& node) {
+    if (node.op == model::Op::kRunIs) drivers.insert({-1, 0});
+    if (node.op != model::Op::kSymbol) return;
+    const model::SymbolKind kind = node.symbol.kind;
+    if (kind == model::SymbolKind::kStatic || kind == model::SymbolKind::kAxis) return;
+    drivers.insert({static_cast<int>(kind), node.symbol.index});
+  });
   return drivers;
 }
 

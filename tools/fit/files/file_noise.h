@@ -37,10 +37,9 @@ struct FileNoise {
 /// - the standard deviation of repeats in the file, if the repeats have at least 5 degrees of freedom;
 /// - otherwise that of repeats in other runs (set-ups) of the file, beside an offset of each run;
 /// - otherwise the residual of the file beside a fit of all files, over its degrees of freedom (readings
-/// minus
-///   the trace of their part of the hat matrix). The fit is repeated with the estimate until the estimate
-///   changes by less than 2 % (variance components: W. Förstner 1979). Outliers count as three standard
-///   deviations.
+///   minus the trace of their part of the hat matrix). The fit is repeated with the estimate until the
+///   estimate changes by less than 2 % (variance components: W. Förstner 1979). Outliers count as three
+///   standard deviations.
 /// The function writes the estimates into `rows` (also for check rows of the file). Files without fit rows do
 /// not change. Returns the estimates; empty if all fit readings have u, or if none has and
 /// the files are alike. Throws InputError if a

@@ -170,8 +170,7 @@ std::optional<std::pair<std::string, std::string>> opposite_run(
 std::string opposite_run_text(const std::string& run, const std::string& other) {
   return fmt::format(
       "the deviations of {0} have the sizes of those of {1} at all common positions, and the opposite sign: "
-      "is "
-      "the sign of {0} reversed (nominal - actual)? The values are read; if they are wrong, correct the "
+      "is the sign of {0} reversed (nominal - actual)? The values are read; if they are wrong, correct the "
       "signs of one of the two runs",
       run, other);
 }
