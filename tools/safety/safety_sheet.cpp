@@ -279,12 +279,14 @@ class Judge {
   };
 
   /// The part of the measured range of a linear axis that is outside its travel, as a share of the travel:
-  /// readings of another machine. A rotary axis may have counted whole turns.
+  /// readings of another machine, if it is longer than the travel itself. Min and max that are less may be
+  /// the range of work of a machine that was measured further (the fit reports its rows, outside-travel). A
+  /// rotary axis may have counted whole turns.
   static void add_outside_travel(const model::Axis& axis, const model::FitRecord::Range& measured,
                                  std::vector<Outside>& list) {
     if (axis.rotary || !axis.min || !axis.max || !(*axis.max > *axis.min)) return;
     const double beyond = std::max(0.0, *axis.min - measured.min) + std::max(0.0, measured.max - *axis.max);
-    if (beyond <= model::kTravelSlack * (*axis.max - *axis.min)) return;
+    if (beyond <= *axis.max - *axis.min) return;
     list.push_back({beyond / (*axis.max - *axis.min),
                     fmt::format("axis {}, measured from {:g} to {:g}, outside its travel {:g} to {:g}: the "
                                 "file describes another machine, or the positions have another zero or unit; "

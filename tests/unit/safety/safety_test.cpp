@@ -149,6 +149,9 @@ TEST(SafetySheet, RowsOutsideTheTravelAreOfAnotherMachine) {
   EXPECT_NE(refused.culprit.find("outside its travel 0 to 200: the file describes another machine"),
             std::string::npos)
       << refused.culprit;
+  // WHEN min and max are the range of work of a machine that was measured further
+  model.axes[0].max = 400;
+  EXPECT_TRUE(finding(safety_sheet(fit::fit(model, m).machine), SafetyRule::kMeasuredRange).ok);
 }
 
 TEST(SafetySheet, AnAxisThatStoodStillCountsOnlyIfACorrectionDependsOnIt) {
