@@ -157,13 +157,20 @@ std::string branch(const MachinePlan& plan, bool work) {
   return text + "  </transforms>\n";
 }
 
+/// How large the tool point of an arm may plausibly be. A fit that frees an unknown tool (--free) then
+/// changes the tool point and not the length of the last link, which moves the tool in the same way.
+constexpr double kTool_mm = 200;
+
 std::string tool_statics(const MachinePlan& plan) {
   std::string text =
       "      <!-- Position of the tool point in the frame of the last axis that carries the tool. Hide: a "
       "fit does not change it. -->\n";
   for (std::size_t k = 0; k < 3; ++k)
-    text += length_static(fmt::format("TP{}", kLengths[k]), plan.tool[k],
-                          plan.arm.empty() ? "tool point" : "tool point on the flange");
+    text += plan.arm.empty() ? length_static(fmt::format("TP{}", kLengths[k]), plan.tool[k], "tool point")
+                             : fmt::format(
+                                   "      <TP{} value=\"{}\" unit=\"mm\" scale=\"{:g}\" Hide=\"true\" "
+                                   "note=\"tool point on the flange\"/>\n",
+                                   kLengths[k], number(plan.tool[k]), kTool_mm);
   return text;
 }
 

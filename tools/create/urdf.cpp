@@ -7,17 +7,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <map>
-#include <optional>
-#include <pugixml.hpp>
-#include <set>
 
+#include "tools/format/urdf_chain.h"
 #include "tools/model/expression.h"
 #include "tools/model/measurement_names.h"
 #include "tools/text/error.h"
-#include "tools/text/numbers.h"
-#include "tools/text/words.h"
-#include "tools/text/xml_text.h"
 
 namespace vernier::create {
 namespace {
@@ -25,203 +19,16 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using format::JointLine;
+using format::UrdfJoint;
 
 constexpr double kDegPerRad = 180 / 3.14159265358979323846, kMmPerM = 1000;
-
-struct Joint {
-  std::string name, type, parent, child;
-  Isometry3d origin = Isometry3d::Identity();  // mm
-  Vector3d axis = Vector3d::UnitX();
-  std::optional<double> lower, upper;  // rad or m, as in the file
-  bool mimic = false;
-  std::size_t line = 0;
-  bool moves() const { return type != "fixed"; }
-  bool slides() const { return type == "prismatic"; }
-};
-
-class Reader {
- public:
-  Reader(const std::string& text, const std::string& file) : text_(text), file_(file) {
-    const pugi::xml_parse_result parsed = document_.load_buffer(text.data(), text.size());
-    if (!parsed)
-      throw text::InputError({file, text::line_of(text, static_cast<std::size_t>(parsed.offset))}, "",
-                             parsed.description());
-    robot_ = document_.child("robot");
-    if (!robot_)
-      throw text::InputError({file, 1}, document_.first_child().name(),
-                             "this file is not a URDF: its root must be <robot>");
-    for (const pugi::xml_node& node : robot_.children())
-      if (std::string_view(node.name()).starts_with("xacro:")) fail(node, node.name(), kExpand);
-  }
-
-  std::string name() const { return robot_.attribute("name").as_string("robot"); }
-
-  std::vector<Joint> joints() const {
-    std::vector<Joint> list;
-    for (const pugi::xml_node& node : robot_.children("joint")) list.push_back(joint(node));
-    return list;
-  }
-
-  std::set<std::string> links() const {
-    std::set<std::string> names;
-    for (const pugi::xml_node& node : robot_.children("link"))
-      names.insert(node.attribute("name").as_string());
-    return names;
-  }
-
- private:
-  static constexpr const char* kExpand = "this is xacro: expand it first (xacro FILE > robot.urdf)";
-
-  [[noreturn]] void fail(const pugi::xml_node& node, const std::string& word, const std::string& why) const {
-    throw text::InputError({file_, text::line_of(text_, static_cast<std::size_t>(node.offset_debug()))}, word,
-                           why);
-  }
-
-  double number(const pugi::xml_node& node, const std::string& word) const {
-    const auto value = text::parse_number(word);
-    if (!value) fail(node, word, "not a number");
-    return *value;
-  }
-
-  Vector3d triple(const pugi::xml_node& node, const char* attribute, const Vector3d& absent) const {
-    const pugi::xml_attribute given = node.attribute(attribute);
-    if (!given) return absent;
-    if (std::string_view(given.as_string()).find("${") != std::string_view::npos)
-      fail(node, given.as_string(), kExpand);
-    const std::vector<std::string> words = text::words_in(given.as_string(), " \t\r\n");
-    if (words.size() != 3) fail(node, given.as_string(), std::string(attribute) + " must be three numbers");
-    return {number(node, words[0]), number(node, words[1]), number(node, words[2])};
-  }
-
-  std::optional<double> limit(const pugi::xml_node& node, const char* attribute) const {
-    const pugi::xml_attribute given = node.attribute(attribute);
-    if (!given) return std::nullopt;
-    return number(node, given.as_string());
-  }
-
-  Joint joint(const pugi::xml_node& node) const {
-    Joint one;
-    one.line = text::line_of(text_, static_cast<std::size_t>(node.offset_debug()));
-    one.name = node.attribute("name").as_string();
-    one.type = node.attribute("type").as_string();
-    one.parent = node.child("parent").attribute("link").as_string();
-    one.child = node.child("child").attribute("link").as_string();
-    if (one.parent.empty() || one.child.empty())
-      fail(node, one.name, "this joint lacks its parent or child link");
-    one.mimic = static_cast<bool>(node.child("mimic"));
-    const pugi::xml_node origin = node.child("origin");
-    const Vector3d turn = triple(origin, "rpy", Vector3d::Zero());
-    constexpr double kFullTurn = 6.3;  // rad
-    if (turn.cwiseAbs().maxCoeff() > kFullTurn)
-      fail(origin, origin.attribute("rpy").as_string(),
-           "more than a full turn: the angles of a URDF are in rad, and these are probably in deg");
-    one.origin.linear() =
-        (Eigen::AngleAxisd(turn[2], Vector3d::UnitZ()) * Eigen::AngleAxisd(turn[1], Vector3d::UnitY()) *
-         Eigen::AngleAxisd(turn[0], Vector3d::UnitX()))
-            .toRotationMatrix();
-    one.origin.translation() = kMmPerM * triple(origin, "xyz", Vector3d::Zero());
-    one.axis = triple(node.child("axis"), "xyz", Vector3d::UnitX());
-    if (one.moves() && !(one.axis.norm() > 0))
-      fail(node, one.name, "the axis of this joint has no direction");
-    one.axis.normalize();
-    one.lower = limit(node.child("limit"), "lower");
-    one.upper = limit(node.child("limit"), "upper");
-    return one;
-  }
-
-  const std::string &text_, &file_;
-  pugi::xml_document document_;
-  pugi::xml_node robot_;
-};
-
-/// The joints from the root to each link.
-class Tree {
- public:
-  Tree(std::vector<Joint> joints, std::set<std::string> links, const std::string& file)
-      : joints_(std::move(joints)), links_(std::move(links)), file_(file) {
-    for (const Joint& one : joints_) {
-      for (const std::string* end : {&one.parent, &one.child})
-        if (!links_.contains(*end))
-          throw text::InputError({file, one.line}, *end, "the URDF has no link of this name");
-      if (!above_.emplace(one.child, &one).second)
-        throw text::InputError({file, one.line}, one.child,
-                               "this link has two parent joints: the URDF is not an arm");
-    }
-    for (const std::string& link : links_) way_to(link);  // refuses a loop
-  }
-
-  /// From the root; empty for the root itself.
-  std::vector<Joint> way_to(const std::string& link) const {
-    std::vector<Joint> way;
-    for (std::string at = link; above_.contains(at); at = way.back().parent) {
-      way.push_back(*above_.at(at));
-      if (way.size() > joints_.size())
-        throw text::InputError({file_, way.back().line}, link,
-                               "the joints close a loop: the URDF is not an arm");
-    }
-    std::reverse(way.begin(), way.end());
-    return way;
-  }
-
-  std::string only_end() const {
-    std::vector<std::string> ends;
-    std::ptrdiff_t most = 1;
-    for (const std::string& link : links_) {
-      if (std::any_of(joints_.begin(), joints_.end(), [&](const Joint& one) { return one.parent == link; }))
-        continue;
-      const std::vector<Joint> way = way_to(link);
-      const auto moving = std::count_if(way.begin(), way.end(), [](const Joint& one) { return one.moves(); });
-      if (moving > most) ends.clear();
-      if (moving < most) continue;
-      most = moving;
-      ends.push_back(link);
-    }
-    if (ends.empty()) throw text::InputError({file_, 1}, "robot", "the URDF has no joint that moves");
-    if (ends.size() > 1)
-      throw text::InputError(fmt::format("{}: the arm has several end links, choose one with --tip: {}",
-                                         file_, text::joined(ends, ", ")));
-    return ends.front();
-  }
-
-  void require_link(const std::string& name) const {
-    if (!links_.contains(name)) throw text::InputError({file_, 1}, name, "the URDF has no link of this name");
-  }
-
- private:
-  std::vector<Joint> joints_;
-  std::set<std::string> links_;
-  const std::string& file_;
-  std::map<std::string, const Joint*> above_;
-};
-
-struct Line {
-  Vector3d point, direction;
-};
 
 /// The component of `v` perpendicular to the unit vector `along`.
 Vector3d across(const Vector3d& v, const Vector3d& along) { return v - v.dot(along) * along; }
 
 double angle_deg(const Vector3d& from, const Vector3d& to, const Vector3d& about) {
   return kDegPerRad * std::atan2(from.cross(to).dot(about), from.dot(to));
-}
-
-/// z along the line; x as near to `x` as it can be, else to `y`.
-Isometry3d frame_on(const Line& line, const Vector3d& origin, const Vector3d& x, const Vector3d& y) {
-  Vector3d side = across(x, line.direction);
-  if (side.norm() < 1e-6) side = across(y, line.direction);
-  Isometry3d frame = Isometry3d::Identity();
-  frame.linear().col(0) = side.normalized();
-  frame.linear().col(2) = line.direction;
-  frame.linear().col(1) = line.direction.cross(frame.linear().col(0));
-  frame.translation() = origin;
-  return frame;
-}
-
-/// The first row's frame: on the first joint's axis, at the root's origin where the axis goes through it.
-Isometry3d first_frame(const Line& axis) {
-  const Vector3d nearest = across(axis.point, axis.direction);
-  return frame_on(axis, nearest.norm() < 1e-9 ? Vector3d::Zero() : nearest, Vector3d::UnitX(),
-                  Vector3d::UnitY());
 }
 
 /// Clears what rounding left of a zero, in mm or deg.
@@ -237,7 +44,7 @@ Isometry3d moved(const DhRow& row) {
 }
 
 /// Hayati's row: to where the next axis meets this frame's own plane.
-DhRow row_to_parallel(const Line& next) {
+DhRow row_to_parallel(const JointLine& next) {
   DhRow row;
   const Vector3d at = next.point - next.point.z() / next.direction.z() * next.direction;
   row.a = clean(at.norm());
@@ -254,7 +61,7 @@ DhRow row_to_parallel(const Line& next) {
 }
 
 /// Along the common normal.
-DhRow row_along_normal(const Line& next) {
+DhRow row_along_normal(const JointLine& next) {
   const Vector3d z = Vector3d::UnitZ();
   Vector3d x = z.cross(next.direction).normalized();
   if (x.x() < -1e-12) x = -x;  // the smaller turn
@@ -269,9 +76,9 @@ DhRow row_along_normal(const Line& next) {
   return row;
 }
 
-DhRow row_to(const Isometry3d& frame, const Line& next) {
+DhRow row_to(const Isometry3d& frame, const JointLine& next) {
   constexpr double kNearlyParallel = 0.05;  // rad
-  const Line seen{frame.inverse() * next.point, frame.linear().transpose() * next.direction};
+  const JointLine seen{frame.inverse() * next.point, frame.linear().transpose() * next.direction};
   const double sine = Vector3d::UnitZ().cross(seen.direction).norm();
   return sine < kNearlyParallel ? row_to_parallel(seen) : row_along_normal(seen);
 }
@@ -305,7 +112,7 @@ std::string axis_name(const std::string& joint) {
   return !is_name || taken || is_static_of_arm(name) ? "J" + name : name;
 }
 
-PlannedAxis axis_of(const Joint& joint, const std::string& file) {
+PlannedAxis axis_of(const UrdfJoint& joint, const std::string& file) {
   const double unit = joint.slides() ? kMmPerM : kDegPerRad;
   PlannedAxis axis{axis_name(joint.name),      -180, 180, joint.slides() ? 'Z' : 'C',
                    joint.type == "continuous", {}};
@@ -319,10 +126,10 @@ PlannedAxis axis_of(const Joint& joint, const std::string& file) {
   return axis;
 }
 
-void require_arm(const std::vector<Joint>& way, const std::string& file) {
+void require_arm(const std::vector<UrdfJoint>& way, const std::string& file) {
   constexpr double kLongest_mm = 20e3;  // no link of an arm is longer
   constexpr double kMostTurn_rad = 20;  // more than three turns to each side
-  for (const Joint& one : way) {
+  for (const UrdfJoint& one : way) {
     if (one.origin.translation().norm() > kLongest_mm)
       throw text::InputError(
           {file, one.line}, one.name,
@@ -366,18 +173,17 @@ std::array<double, 3> UrdfArm::tool(const std::array<double, 3>& in_tip) const {
 }
 
 UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::string& tip) {
-  const Reader reader(text, file);
-  const Tree tree(reader.joints(), reader.links(), file);
+  const format::UrdfTree tree(text, file);
   UrdfArm arm;
-  arm.name = reader.name();
+  arm.name = tree.name();
   if (!tip.empty()) tree.require_link(tip);
   arm.tip = tip.empty() ? tree.only_end() : tip;
-  const std::vector<Joint> way = tree.way_to(arm.tip);
+  const std::vector<UrdfJoint> way = tree.way_to(arm.tip);
   require_arm(way, file);
   arm.root = way.empty() ? arm.tip : way.front().parent;
   Isometry3d at = Isometry3d::Identity();
-  std::vector<Line> lines;
-  for (const Joint& joint : way) {
+  std::vector<JointLine> lines;
+  for (const UrdfJoint& joint : way) {
     at = at * joint.origin;
     if (!joint.moves()) continue;
     arm.axes.push_back(axis_of(joint, file));
@@ -386,7 +192,7 @@ UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::
   }
   if (lines.empty())
     throw text::InputError({file, 1}, arm.tip, "no joint between the root and this link moves");
-  Isometry3d frame = first_frame(lines.front());
+  Isometry3d frame = format::first_row_frame(lines.front());
   arm.base = base_of(frame);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const bool prismatic = arm.rows[i].prismatic;

@@ -64,12 +64,35 @@ class Arm {
     place_points();
   }
 
-  UrdfFile file() const {
+  /// The arm with all joint variables at 0: the axes that the joints before them carry from the reference
+  /// pose.
+  IdealArm at_zero() const {
+    IdealArm arm;
+    Isometry3d back = Isometry3d::Identity();
+    for (const Joint& joint : joints_) {
+      arm.joints.push_back(names_[joint.axis]);
+      arm.axes.push_back({back * joint.point, back.linear() * joint.direction});
+      back = back * motion_of(joint, machine_.axes[joint.axis].rotary, -reference_[joint.axis]);
+    }
+    constexpr std::array<const char*, 3> kToolPoint = {"TPX", "TPY", "TPZ"};  // of `vernier new`
+    for (std::size_t i = 0; i < kToolPoint.size(); ++i)
+      if (const auto at = machine_.find_static(kToolPoint[i])) arm.tool_mm[i] = machine_.statics[*at].value;
+    arm.last = back * at_reference_ * Eigen::Translation3d(-arm.tool_mm[0], -arm.tool_mm[1], -arm.tool_mm[2]);
+    return arm;
+  }
+
+  UrdfFile file(const UrdfOriginal* original) const {
     UrdfFile file;
     file.undetermined = undetermined();
     for (UndeterminedJoint& one : file.undetermined)
       if (const auto axis = machine_.find_axis(one.joint)) one.joint = names_[*axis];
-    file.text = text(file.undetermined);
+    if (original == nullptr) {
+      file.text = text(file.undetermined);
+    } else {
+      const model::Machine nominal = model::nominal_machine(machine_);
+      file.original = calibrated_original(*original, at_zero(), Arm(nominal, at_, names_).at_zero());
+      file.text = with_comment(*file.original, file.undetermined);
+    }
     measure(file);
     return file;
   }
@@ -334,21 +357,16 @@ class Arm {
     file.measured = machine_.fitted && !machine_.fitted->measured.empty();
   }
 
-  static std::string triple(const Vector3d& v) {
-    const auto plain = [](double value) { return std::abs(value) < 5e-16 ? 0.0 : value; };
-    return fmt::format("{:.12g} {:.12g} {:.12g}", plain(v[0]), plain(v[1]), plain(v[2]));
+  static std::string origin(const Isometry3d& frame) {
+    return fmt::format("    <origin xyz=\"{}\" rpy=\"{}\"/>\n", format::origin_xyz(frame),
+                       format::origin_rpy(frame));
   }
 
-  /// `<origin>` of a frame in its parent's. rpy: fixed axes X, Y, Z.
-  static std::string origin(const Isometry3d& frame) {
-    const Eigen::Matrix3d r = frame.rotation();
-    const double pitch = std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)));
-    const bool straight_up = std::hypot(r(0, 0), r(1, 0)) < 1e-12;
-    const double yaw = straight_up ? 0 : std::atan2(r(1, 0), r(0, 0));
-    const double roll =
-        straight_up ? std::atan2(r(0, 1) * (pitch > 0 ? 1 : -1), r(1, 1)) : std::atan2(r(2, 1), r(2, 2));
-    return fmt::format("    <origin xyz=\"{}\" rpy=\"{}\"/>\n", triple(frame.translation() / 1000),
-                       triple({roll, pitch, yaw}));
+  /// The numbers of a unit vector.
+  static std::string triple(const Vector3d& v) {
+    Isometry3d as_metres = Isometry3d::Identity();
+    as_metres.translation() = 1000 * v;
+    return format::origin_xyz(as_metres);
   }
 
   std::string limits_of(const model::Axis& axis) const {
@@ -358,16 +376,32 @@ class Arm {
                        *axis.min / unit, *axis.max / unit);
   }
 
+  static std::string comment_of(const std::vector<UndeterminedJoint>& undetermined) {
+    if (undetermined.empty()) return {};
+    return fmt::format(
+        "<!-- The readings of the fit do not determine these joints completely; their values are set by "
+        "convention or prior:\n     {}.\n     Other values of the same joints give the same positions of the "
+        "tool in the survey. -->\n",
+        joints_text(undetermined));
+  }
+
+  /// The original with its calibrated joints, and before the robot a comment that says so.
+  std::string with_comment(const CalibratedOriginal& original,
+                           const std::vector<UndeterminedJoint>& undetermined) const {
+    std::string text = original.text;
+    pugi::xml_document document;
+    document.load_buffer(text.data(), text.size());
+    const auto robot = static_cast<std::size_t>(document.child("robot").offset_debug());
+    text.insert(robot - 1,  // before its "<"
+                fmt::format("<!-- Calibrated origins of the joints: machine file {}. The tool point of the "
+                            "machine file is at xyz \"{}\" (m) in the link {}. -->\n{}",
+                            machine_.name, triple(Vector3d(original.tool_mm.data()) / 1000), original.tip,
+                            comment_of(undetermined)));
+    return text;
+  }
+
   std::string text(const std::vector<UndeterminedJoint>& undetermined) const {
-    const std::string open =
-        undetermined.empty()
-            ? ""
-            : fmt::format(
-                  "<!-- The readings of the fit do not determine these joints completely; their values are "
-                  "set "
-                  "by convention or prior:\n     {}.\n     Other values of the same joints give the same "
-                  "positions of the tool in the survey. -->\n",
-                  joints_text(undetermined));
+    const std::string open = comment_of(undetermined);
     std::string text = fmt::format(
         "<?xml version=\"1.0\"?>\n"
         "<!-- The calibrated joints of {}: m, rad. Each frame is parallel to the base at the reference "
@@ -423,8 +457,8 @@ class Arm {
 }  // namespace
 
 UrdfFile urdf_arm(const model::Machine& machine, const model::States& at,
-                  const std::vector<std::string>& joints) {
-  return Arm(machine, at, joints).file();
+                  const std::vector<std::string>& joints, const UrdfOriginal* original) {
+  return Arm(machine, at, joints).file(original);
 }
 
 std::vector<std::string> joint_names(const model::Machine& machine, const std::string& text) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/exchange/undetermined_joints.h"
+#include "tools/exchange/urdf_original.h"
 #include "tools/model/machine.h"
 #include "tools/model/states.h"
 
@@ -21,6 +24,7 @@ struct UrdfFile {
   std::size_t positions = 0;  // number of positions at which the differences were computed
   bool measured = false;      // true if these positions are in the measured ranges of the fit
   std::vector<UndeterminedJoint> undetermined;  // joints that the readings of the fit do not determine
+  std::optional<CalibratedOriginal> original;   // with an original URDF: its tip and its tool point
 };
 
 /// Returns the URDF model of an arm with one joint for each axis. The links are base_link, one link for each
@@ -32,9 +36,10 @@ struct UrdfFile {
 /// moves, one joint after another. Errors that depend on joints, inputs or direction then remain only in
 /// part. `joints`: name of the joint of each axis; empty: the names of the axes. The differences of the
 /// result are those at 1000 other poses in the same ranges (fixed seeds). `at` (one state): values of inputs
-/// and motion. Throws InputError if an axis moves the workpiece, or if an axis moves no transform.
+/// and motion. `original`: if not null, the text of the result is the original with the calibrated origins.
+/// Throws InputError if an axis moves the workpiece, or if an axis moves no transform.
 UrdfFile urdf_arm(const model::Machine& machine, const model::States& at,
-                  const std::vector<std::string>& joints = {});
+                  const std::vector<std::string>& joints = {}, const UrdfOriginal* original = nullptr);
 
 /// Returns the names of the joints in the URDF from which a machine file was made (attribute `joint` of an
 /// axis): one name for each axis, that of the axis if it has no such attribute. `text`: the machine file.

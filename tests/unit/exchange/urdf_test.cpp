@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <map>
 #include <memory>
 #include <pugixml.hpp>
 #include <random>
 #include <sstream>
 
+#include "tools/create/machine_file.h"
 #include "tools/create/urdf.h"
 #include "tools/exchange/urdf_arm.h"
+#include "tools/format/urdf_chain.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
@@ -151,6 +154,181 @@ TEST(Urdf, JointsAreFittedToTheMachineInTheMeasuredRanges) {
   EXPECT_TRUE(part.measured);
   // 50 um sin(J2) over 60 to 80 deg: a standard deviation of 1.8 um.
   EXPECT_LT(part.rms_um, 1.9);
+}
+
+/// An arm as its maker describes it: frames at angles, an axis that is no axis of the frame, a range without
+/// zero, a slide, a fixed joint between, a joint without origin, meshes, a sensor beside the arm.
+std::string maker(const std::string& flange) {
+  return R"xml(<?xml version="1.0"?>
+<!-- <robot> of the maker -->
+<robot name="maker">
+  <material name="grey"><color rgba="0.5 0.5 0.5 1"/></material>
+  <link name="world"/><link name="base"/>
+  <joint name="stand" type="fixed"><parent link="world"/><child link="base"/>
+    <origin xyz="0.1 -0.2 0.05" rpy="0 0 0.3"/></joint>
+  <link name="shoulder"><visual><geometry><mesh filename="package://maker/shoulder.stl"/></geometry></visual></link>
+  <joint name="shoulder_pan" type="revolute"><parent link="base"/><child link="shoulder"/>
+    <origin rpy="0.2 0 0.7" xyz="0 0 0.4"/><axis xyz="0 0.1 1"/>
+    <limit lower="-2.9" upper="2.9" effort="120" velocity="2.1"/></joint>
+  <link name="upper"/>
+  <joint name="lift" type="revolute"><parent link="shoulder"/><child link="upper"/>
+    <origin xyz="0.05 0.1 0.02" rpy="1.2 0.4 -0.6"/><axis xyz="0 0 -1"/>
+    <limit lower="0.4" upper="2.4" effort="110" velocity="2"/></joint>
+  <link name="bracket"/>
+  <joint name="bracket_fix" type="fixed"><parent link="upper"/><child link="bracket"/><origin xyz="0.3 0 0.01"/></joint>
+  <link name="carriage"/>
+  <joint name="slide" type="prismatic"><parent link="bracket"/><child link="carriage"/>
+    <origin xyz="0 0.02 0" rpy="0 0.1 0"/><axis xyz="1 0 0"/><limit lower="0" upper="0.3" effort="9" velocity="1"/></joint>
+  <link name="wrist"/>
+  <joint name="wrist_roll" type="continuous"><parent link="carriage"/><child link="wrist"/><axis xyz="0 1 0"/></joint>
+  <link name="camera"/>
+  <joint name="camera_fix" type="fixed"><parent link="carriage"/><child link="camera"/><origin xyz="0 0 0.1"/></joint>
+)xml" + flange +
+         "</robot>\n";
+}
+
+const char* const kFlange = R"xml(  <link name="flange"/>
+  <joint name="flange_fix" type="fixed"><parent link="wrist"/><child link="flange"/><origin xyz="0.02 0.09 0"/></joint>
+  <link name="tool0"/>
+  <joint name="tool_fix" type="fixed"><parent link="flange"/><child link="tool0"/>
+    <origin xyz="0 0 0.03" rpy="0 1.5 0"/></joint>
+)xml";
+
+/// The machine file of `vernier new` for that arm, with errors of all its statics.
+std::string calibrated(const std::string& urdf, const std::string& tip) {
+  const create::UrdfArm arm = create::parse_urdf(urdf, "maker.urdf", tip);
+  create::MachinePlan plan = create::plan_robot(arm.axes, arm.rows);
+  plan.name = arm.name;
+  plan.base = arm.base;
+  plan.tool = arm.tool({12, -7, 80});
+  return create::machine_file(plan);
+}
+
+/// Draws an error of each static that has a nominal value: 0.4 mm, 0.1 deg; `tool`: of the tool point, mm.
+void disturb(Machine& machine, double tool) {
+  std::mt19937_64 random(17);
+  std::normal_distribution<double> normal(0, 1);
+  for (Static& one : machine.statics) {
+    if (one.name.starts_with("TP"))
+      one.nominal = one.value, one.value += tool;
+    else if (one.nominal)
+      one.value = *one.nominal + normal(random) * (one.unit == "mm" ? 0.4 : one.unit == "deg" ? 0.1 : 0);
+  }
+}
+
+/// Frame of a link in the root by the definitions of the URDF page, with the joints by their names.
+Isometry3d frame_of(const std::string& text, const std::string& link,
+                    const std::map<std::string, double>& at) {
+  Isometry3d pose = Isometry3d::Identity();
+  for (const format::UrdfJoint& joint : format::UrdfTree(text, "robot.urdf").way_to(link)) {
+    pose = pose * joint.origin;
+    if (joint.slides())
+      pose.translate(at.at(joint.name) * joint.axis);
+    else if (joint.moves())
+      pose.rotate(Eigen::AngleAxisd(at.at(joint.name) / 57.29577951308232, joint.axis));
+  }
+  return pose;
+}
+
+/// Largest distance of the tool point in the URDF from that of the machine, mm, at 200 poses.
+double worst_of(const exchange::UrdfFile& file, const Machine& machine,
+                const std::vector<std::string>& names) {
+  std::mt19937_64 random(5);
+  const std::array<double, 6>& shift = machine.base_shifts.at(0).value;
+  Isometry3d base(Eigen::Translation3d(shift[0], shift[1], shift[2]));
+  for (int k = 0; k < 3; ++k)
+    base.rotate(
+        Eigen::AngleAxisd(shift[3 + static_cast<std::size_t>(k)] / 57.29577951308232, Vector3d::Unit(k)));
+  double worst = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::map<std::string, double> at;
+    States states = make_states(1, machine);
+    for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
+      states.axis[axis][0] = std::uniform_real_distribution<double>(
+          machine.axes[axis].min.value_or(-180), machine.axes[axis].max.value_or(180))(random);
+      at[names[axis]] = states.axis[axis][0];
+    }
+    const Vector3d real = base * Vector3d(forward(machine, states).position.col(0));
+    const Vector3d held =
+        frame_of(file.text, file.original->tip, at) * Vector3d(file.original->tool_mm.data());
+    worst = std::max(worst, (real - held).norm());
+  }
+  return worst;
+}
+
+TEST(UrdfOriginal, KeepsEverythingButTheOriginsOfItsJoints) {
+  const std::string urdf = maker(kFlange), text = calibrated(urdf, "tool0");
+  const exchange::UrdfOriginal original{urdf, "maker.urdf", "tool0"};
+  Machine machine = parse_machine(text, "maker.xml");
+  const std::vector<std::string> names = exchange::joint_names(machine, text);
+  // GIVEN the nominal arm THEN no origin changes
+  const exchange::UrdfFile nominal = exchange::urdf_arm(machine, make_states(1, machine), names, &original);
+  EXPECT_EQ(nominal.original->text, urdf);
+  EXPECT_NEAR(nominal.original->tool_mm[2], 80, 1e-6);
+  EXPECT_LT(worst_of(nominal, machine, names), 1e-6);
+  // GIVEN errors of all joints and a tool 40 mm beside its nominal place
+  disturb(machine, 40);
+  const exchange::UrdfFile file = exchange::urdf_arm(machine, make_states(1, machine), names, &original);
+  EXPECT_LT(worst_of(file, machine, names), 1e-6);
+  EXPECT_EQ(file.original->tip, "tool0");
+  EXPECT_FALSE(file.original->added_tip);
+  // THEN the frames of the links are where they were, to the errors of the joints: the tool is no error of
+  // them
+  const format::UrdfTree before(urdf, "maker.urdf"), after(file.original->text, "robot.urdf");
+  const std::vector<format::UrdfJoint> was = before.way_to("tool0"), is = after.way_to("tool0");
+  ASSERT_EQ(is.size(), was.size());
+  for (std::size_t i = 0; i < is.size(); ++i) {
+    EXPECT_EQ(is[i].name, was[i].name);
+    EXPECT_EQ(is[i].axis, was[i].axis);
+    EXPECT_LT((is[i].origin.translation() - was[i].origin.translation()).norm(), 3) << is[i].name;
+    EXPECT_LT((is[i].origin.linear() - was[i].origin.linear()).norm(), 0.01) << is[i].name;
+    const bool fixed = is[i].name == "stand" || is[i].name == "bracket_fix" || is[i].name == "tool_fix";
+    EXPECT_EQ(is[i].origin.isApprox(was[i].origin, 0), fixed) << is[i].name;
+  }
+  // AND the rest of the text is that of the maker
+  const auto without_origins = [](std::string one) {
+    for (std::size_t at = 0; (at = one.find("<origin", at)) != std::string::npos;)
+      one.erase(at, one.find("/>", at) + 2 - at);
+    return one;
+  };
+  EXPECT_EQ(without_origins(file.original->text), without_origins(urdf));
+  EXPECT_NE(file.text.find("<!-- Calibrated origins of the joints"), std::string::npos);
+}
+
+TEST(UrdfOriginal, HasOneMoreLinkWhereTheTipTurnsWithTheLastJoint) {
+  const std::string urdf = maker(""), text = calibrated(urdf, "wrist");
+  const exchange::UrdfOriginal original{urdf, "maker.urdf", "wrist"};
+  Machine machine = parse_machine(text, "maker.xml");
+  disturb(machine, 0);
+  const std::vector<std::string> names = exchange::joint_names(machine, text);
+  const exchange::UrdfFile file = exchange::urdf_arm(machine, make_states(1, machine), names, &original);
+  EXPECT_TRUE(file.original->added_tip);
+  EXPECT_EQ(file.original->tip, "wrist_calibrated");
+  EXPECT_LT(worst_of(file, machine, names), 1e-6);
+}
+
+TEST(UrdfOriginal, IsRefusedForAnotherMachine) {
+  const std::string urdf = maker(kFlange), text = calibrated(urdf, "tool0");
+  const Machine machine = parse_machine(text, "maker.xml");
+  const std::vector<std::string> names = exchange::joint_names(machine, text);
+  const auto refusal = [&](const std::string& other, const std::string& tip) {
+    const exchange::UrdfOriginal original{other, "other.urdf", tip};
+    try {
+      exchange::urdf_arm(machine, make_states(1, machine), names, &original);
+    } catch (const text::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  std::string longer = urdf, renamed = urdf;
+  longer.replace(longer.find("0.3 0 0.01"), 10, "0.3 0 0.02");
+  renamed.replace(renamed.find("\"lift\""), 6, "\"hoist\"");
+  EXPECT_NE(refusal(longer, "tool0").find("\"wrist_roll\": the axis of this joint is 10 mm and "),
+            std::string::npos)
+      << refusal(longer, "tool0");
+  EXPECT_NE(refusal(renamed, "tool0").find("joint 2 of the machine file is lift"), std::string::npos);
+  EXPECT_NE(refusal(urdf, "tool1").find("the URDF has no link of this name"), std::string::npos);
+  EXPECT_NE(refusal("<machine/>", "tool0").find("this file is not a URDF"), std::string::npos);
 }
 
 TEST(Urdf, IsForArmsOnly) {

@@ -18,7 +18,7 @@ namespace vernier::commands::exchange_cli {
 using Json = nlohmann::ordered_json;
 
 struct ExchangeArguments {
-  std::string machine, file, output, json, axis, at, reversal;
+  std::string machine, file, output, json, axis, at, reversal, original, tip;
   std::vector<std::string> accept;
   int type = 1;
   double tolerance_um = 0.1;

@@ -15,8 +15,12 @@ void export_urdf(const ExchangeArguments& arguments) {
   const model::Machine machine = read_model(arguments.machine);
   const model::States at = state_of(machine, arguments);
   require_safe(machine, arguments, true);
+  std::optional<exchange::UrdfOriginal> original;
+  if (!arguments.original.empty())
+    original = {text::read_file(arguments.original), arguments.original, arguments.tip};
   const exchange::UrdfFile file =
-      exchange::urdf_arm(machine, at, exchange::joint_names(machine, text::read_file(arguments.machine)));
+      exchange::urdf_arm(machine, at, exchange::joint_names(machine, text::read_file(arguments.machine)),
+                         original ? &*original : nullptr);
   const Json files = write_folder(arguments, {{"robot.urdf", file.text}});
   std::vector<exchange::LeftOut> left;
   if (file.worst_um > exchange::kNothing_um)
@@ -28,6 +32,18 @@ void export_urdf(const ExchangeArguments& arguments) {
       "with the best base and tool point): rms {:.3g} um\n",
       file.positions, file.measured ? "measured" : "declared", file.rms_um, file.worst_um, file.worst_urad,
       file.rms_nominal_um);
+  Json tip;
+  if (file.original) {
+    const std::array<double, 3>& tool = file.original->tool_mm;
+    fmt::print(
+        human_stream(arguments.json),
+        "the joints of {} are calibrated up to the link {}{}; the tool point of the machine file is at "
+        "{:.4f}, {:.4f}, {:.4f} mm in this link\n",
+        arguments.original, file.original->tip,
+        file.original->added_tip ? " (new, because the last joint of the arm ends at the tip)" : "", tool[0],
+        tool[1], tool[2]);
+    tip = {{"link", file.original->tip}, {"added", file.original->added_tip}, {"tool_mm", three_json(tool)}};
+  }
   Json undetermined = Json::array();
   for (const exchange::UndeterminedJoint& one : file.undetermined)
     undetermined.push_back({{"joint", one.joint}, {"parameters", one.parameters}});
@@ -37,7 +53,8 @@ void export_urdf(const ExchangeArguments& arguments) {
                "the values of one of these joints alone\n",
                exchange::joints_text(file.undetermined));
   finish(machine, arguments, "urdf", left, files, {}, true,
-         {{"errors",
+         {{"tip", tip},
+          {"errors",
            {{"positions", file.positions},
             {"in_measured_ranges", file.measured},
             {"rms_before_um", file.rms_nominal_um},
@@ -53,6 +70,14 @@ void add_robot_exports(CLI::App* parent) {
   auto arguments = std::make_shared<ExchangeArguments>();
   CLI::App* command = add_export(parent, "urdf", "URDF: the calibrated joints of an arm (ROS)", kWritesFolder,
                                  "directory", arguments);
+  command
+      ->add_option("--original", arguments->original,
+                   "URDF from which the machine file was made: keep its links, meshes, limits and names, "
+                   "and change the origins of its joints only")
+      ->type_name(kReads);
+  command->add_option("--tip", arguments->tip, "end link in this URDF (default: its only end link)")
+      ->type_name("LINK")
+      ->needs("--original");
   command->footer(
       "The command writes robot.urdf with a joint for each axis. The origins and axes of the joints are "
       "fitted to the machine\n"

@@ -58,7 +58,7 @@ constexpr Allowed kAllowed[] = {
     {"export rrf", false, true, "machine leave-out at accept steps tolerance bed touches output"},
     {"export marlin", false, true, "machine leave-out at accept steps tolerance bed touches output"},
     {"export grbl", false, true, "machine leave-out at accept steps tolerance output"},
-    {"export urdf", false, true, "machine leave-out at accept output"},
+    {"export urdf", false, true, "machine original tip leave-out at accept output"},
     {"export axis-csv", false, true, "machine leave-out at accept output"},
     {"export isg-csv", false, true, "machine leave-out at accept output"},
     {"correct", false, true, "machine path at zero place tool deviation back chords rotary output"},
