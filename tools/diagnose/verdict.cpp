@@ -65,7 +65,7 @@ class Decision {
     std::string (Decision::*explains)();
     Verdict verdict;
   };
-  static const std::array<Rule, 20> kRules;
+  static const std::array<Rule, 21> kRules;
 
   // The rules, in the order of the table.
 
@@ -223,6 +223,31 @@ class Decision {
         "recorded quantity. No cause is named; {} is only a candidate.{}",
         quick ? "from row to row" : "slowly", std::sqrt(square),
         ::vernier::fit::in_words(answer_.noise, answer_.noise_unit), pool_.candidate(*doubtful).spoken,
+        check_rows_in_words(answer_.ladder, accepted_.size()));
+  }
+
+  /// An error that steps again and again, to as many steps as a model of the noise may have, and that u does
+  /// not state: a load that nobody recorded rather than an instrument that was knocked. An effect of an input
+  /// or of the time that explains less than the steps may be a part of it.
+  std::string steps_beyond_u() {
+    if (!fit::has_uncertainty(found_.measurement)) return {};
+    std::set<std::size_t> rows;
+    for (const fit::NoiseStep& step : answer_.noise.steps)
+      if (!step.of_set_up()) rows.insert(step.row);
+    if (rows.size() < limits_.most_steps) return {};
+    const auto doubtful = std::find_if(accepted_.begin(), accepted_.end(),
+                                       [&](std::size_t item) { return can_follow_a_drift(item); });
+    if (doubtful == accepted_.end()) return {};
+    const double left = answer_.ladder.back().chi_square_per_freedom;
+    if (left - mean_square_beside_steps(false) <= answer_.ladder.front().chi_square_per_freedom - left)
+      return {};
+    return fmt::format(
+        "The readings step at {} rows or more, and u does not state these steps. An error of the machine "
+        "that "
+        "depends on no recorded quantity, such as a load, can look like this. No cause is named; {} is only "
+        "a "
+        "candidate.{}",
+        rows.size(), pool_.candidate(*doubtful).spoken,
         check_rows_in_words(answer_.ladder, accepted_.size()));
   }
 
@@ -602,7 +627,7 @@ class Decision {
 
 // The order is the precedence: the instrument before the machine, no name before a doubtful name,
 // several names before one.
-const std::array<Decision::Rule, 20> Decision::kRules = {{
+const std::array<Decision::Rule, 21> Decision::kRules = {{
     {&Decision::time_base, Verdict::kInstrument},
     {&Decision::outliers, Verdict::kInstrument},
     {&Decision::step_beside_a_name, Verdict::kUnexplained},
@@ -616,6 +641,7 @@ const std::array<Decision::Rule, 20> Decision::kRules = {{
     {&Decision::not_down_to_noise, Verdict::kUnexplained},
     {&Decision::pieces, Verdict::kUnexplained},
     {&Decision::drift_beyond_u, Verdict::kUnexplained},
+    {&Decision::steps_beyond_u, Verdict::kUnexplained},
     {&Decision::heat_without_thermometer, Verdict::kUnexplained},
     {&Decision::check_contradicts, Verdict::kUnexplained},
     {&Decision::terms_without_name, Verdict::kUnexplained},

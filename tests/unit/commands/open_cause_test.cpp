@@ -69,6 +69,15 @@ TEST(Improve, UnknownToolOfARobotIsAddedBeforeTheSearchForTheRest) {
   EXPECT_THAT(result.said, HasSubstr("joint joint_a3: compliance"));
 }
 
+/// The readings step at each quarter of a run. A slow response to heat follows a part of the steps, and was
+/// added: the error at new poses became 1.1 times as large.
+TEST(Improve, AddsNoHeatForALoadThatChangesInStepsAndIsNotRecorded) {
+  const Improved result = improve("load_not_recorded");
+  EXPECT_THAT(result.effects(), testing::IsEmpty());
+  EXPECT_EQ(result.json["verdict"], "unexplained");
+  EXPECT_THAT(result.said, HasSubstr("The readings step at 4 rows or more, and u does not state these steps"));
+}
+
 /// Creep, which the catalogue marks as rare, is the same function of these positions as lead error and
 /// backlash together. The usual causes are named, first and later in the stepwise model.
 TEST(Improve, RareEffectThatPredictsTheSameReadingsOpensNoCause) {

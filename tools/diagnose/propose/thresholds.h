@@ -214,6 +214,8 @@ struct VerdictThresholds {
   /// `of_foreseen`: the search was not linear if the fit of this effect leaves at most this fraction of the
   /// share that the search foresaw.
   double nearly_all = levels.negligible, of_foreseen = levels.most;
+  /// Number of steps of the readings from which an effect that changes in time is a candidate only.
+  std::size_t most_steps = levels.most_steps;
   /// Number of degrees of freedom above which a noise that is larger than the stated uncertainty is accepted.
   double enough_readings = levels.readings_of_structure;
   /// Significance level of candidates. A noise larger than the stated uncertainty is accepted only if no
