@@ -107,7 +107,7 @@ std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t 
 }
 
 std::vector<LeftOut> beyond_straight_axes(const model::Machine& machine, const model::States& at,
-                                          bool heights) {
+                                          bool heights, const std::vector<double>& lost_motion) {
   constexpr Index kPositions = 401;  // more than four a period of the usual screws
   std::vector<LeftOut> result;
   const auto add = [&](std::string what, double um) {
@@ -129,7 +129,10 @@ std::vector<LeftOut> beyond_straight_axes(const model::Machine& machine, const m
       if (moved == axis) {
         states.direction[axis].setConstant(-1);
         const model::Column back = kinematics::first_order_offset(machine, states)[axis];
-        add("reversal error (backlash) of " + name, maths::kUmPerMm * (forth - back).abs().maxCoeff());
+        const double held = lost_motion.empty() ? 0 : lost_motion[axis];
+        add((held > 0 ? "change along the axis of the reversal error of " : "reversal error (backlash) of ") +
+                name,
+            maths::kUmPerMm * (forth - back - held).abs().maxCoeff());
       }
       if (heights && name == "Z" && moved != axis) continue;
       Eigen::MatrixXd line(kPositions, 2);

@@ -31,9 +31,10 @@ std::vector<LeftOut> beyond_own_axis(const model::Machine& machine, std::size_t 
 /// first-order offset of each axis: the reversal error, the part along its own axis that is no scale (lead
 /// and cyclic errors), and the part along each other axis that is no squareness (straightness). The other
 /// axes are in the middle of their ranges. `heights`: true if the format has a mesh of heights, so that Z
-/// along X and Y is no part of the list.
+/// along X and Y is no part of the list. `lost_motion`: what the format holds of the reversal error, mm, an
+/// entry for each axis of the machine; empty: nothing.
 std::vector<LeftOut> beyond_straight_axes(const model::Machine& machine, const model::States& at,
-                                          bool heights);
+                                          bool heights, const std::vector<double>& lost_motion = {});
 
 /// Returns deviations that remain if all tables are zero (position errors, scale factors, terms of the user):
 /// the largest value at random states.

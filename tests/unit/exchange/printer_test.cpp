@@ -194,6 +194,33 @@ TEST(PrinterErrors, OfATemperatureAreStatedAtTheEndsOfItsRange) {
   EXPECT_NEAR(left[0].um, 80 - 80.0 / 3, 2);
 }
 
+TEST(PrinterLostMotion, IsInTheFilesOfFirmwareThatHasACommandForIt) {
+  // GIVEN X falls short by 8 um in both directions (the twentieth part more at its end), and Y goes too far
+  const Machine machine = parse_machine(R"xml(<machine name="lost"><variables>
+  <static><b value="-0.008" nominal="0"/><s value="1e-4" nominal="0"/></static>
+  <machineaxes><X min="0" max="200"/><Y min="0" max="200"/><Z min="0" max="150"/></machineaxes></variables>
+  <transforms branch="tool"><sixdof n="1" X="X+b*dirX*(1+(X-100)/2000)+s*Y" Y="Y-b*dirY"/>
+  <sixdof n="2" Z="Z"/></transforms></machine>)xml",
+                                        "lost.xml");
+  const ThreeAxes axes = three_axes(machine);
+  const auto text_of = [&](Firmware firmware) {
+    PrinterCorrection correction =
+        printer_correction(machine, axes, features_of(firmware, {}), at_rest(machine), 1);
+    return firmware_files(firmware, {}, machine.name, correction).front().text;
+  };
+  EXPECT_NE(text_of(Firmware::kMarlin).find("\nM425 F1 X0.0160 ; lost motion"), std::string::npos)
+      << text_of(Firmware::kMarlin);
+  EXPECT_NE(text_of(Firmware::kRepRap).find("\nM425 X0.0160 ; lost motion"), std::string::npos);
+  EXPECT_EQ(text_of(Firmware::kKlipper).find("M425"), std::string::npos);
+  // THEN what changes along the axis stays, and the axis that goes too far is left out
+  const std::vector<LeftOut> left = beyond_straight_axes(machine, at_rest(machine), true, {0.016, 0, 0});
+  ASSERT_GE(left.size(), 2U);
+  EXPECT_EQ(left[0].what, "change along the axis of the reversal error of X");
+  EXPECT_NEAR(left[0].um, 0.8, 0.01);
+  EXPECT_EQ(left.back().what, "reversal error (backlash) of Y");
+  EXPECT_NEAR(left.back().um, 16, 0.1);
+}
+
 TEST(PrinterErrors, OfKindsThatAPrinterCannotCorrectAreNamed) {
   const Machine machine = parse_machine(R"xml(<machine name="kinds"><variables>
   <static><b value="0.008" nominal="0"/><w value="0.003" nominal="0"/><s value="0.01" nominal="0"/></static>

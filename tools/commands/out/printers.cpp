@@ -290,6 +290,10 @@ void print_straight_parts(std::FILE* out, const exchange::PrinterCorrection& cor
   for (const auto& [name, tangent] : skews)
     if (tangent != 0)
       fmt::print(out, "squareness {}: the files correct {:.4g} deg\n", name, -tangent / maths::kRadPerDeg);
+  for (std::size_t i = 0; i < correction.lost_motion.size(); ++i)
+    if (correction.lost_motion[i] > 0)
+      fmt::print(out, "lost motion of {} at a reversal: the files correct {:.4g} um\n", exchange::kLetters[i],
+                 maths::kUmPerMm * correction.lost_motion[i]);
   for (std::size_t i = 0; i < correction.steps.size(); ++i)
     if (correction.steps[i] != 1)
       fmt::print(out, "scale {}: the files correct {:.4g} um/m\n", exchange::kLetters[i],
@@ -332,9 +336,12 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   print_straight_parts(human_stream(common.json), correction);
   Json extra = errors_json(errors);
   std::vector<exchange::LeftOut> left = remaining(errors.after_um);
-  if (!follows_touches)
-    for (exchange::LeftOut& one : exchange::beyond_straight_axes(machine, at, features.mesh))
+  if (!follows_touches) {
+    std::vector<double> lost_motion(machine.axes.size(), 0);
+    for (std::size_t i = 0; i < axes.axis.size(); ++i) lost_motion[axes.axis[i]] = correction.lost_motion[i];
+    for (exchange::LeftOut& one : exchange::beyond_straight_axes(machine, at, features.mesh, lost_motion))
       left.push_back(std::move(one));
+  }
   add_unmeasured(left, correction);
   if (unmeasured_heights) {
     left.push_back(
@@ -412,8 +419,8 @@ void add_printer_exports(CLI::App* parent) {
       parent, "klipper", "Klipper: skew_correction, bed_mesh and rotation_distance",
       "present rotation_distance of X, Y and Z, mm per turn; without this option the scale is not corrected",
       Firmware::kKlipper);
-  add_printer(parent, "rrf", "RepRapFirmware: M556, height map and M92", kSteps, Firmware::kRepRap);
-  add_printer(parent, "marlin", "Marlin: M852, M421 and M92", kSteps, Firmware::kMarlin);
+  add_printer(parent, "rrf", "RepRapFirmware: M556, height map, M92 and M425", kSteps, Firmware::kRepRap);
+  add_printer(parent, "marlin", "Marlin: M852, M421, M92 and M425", kSteps, Firmware::kMarlin);
   add_printer(parent, "grbl", "grbl: steps per mm ($100 to $102), the only correction that grbl can store",
               kSteps, Firmware::kGrbl);
 }

@@ -174,6 +174,38 @@ void fit_straight_parts(PrinterCorrection& correction, const PrinterFeatures& fe
   if (features.steps) correction.steps = {1 + parts[3], 1 + parts[4], 1 + parts[5]};
 }
 
+/// Mean over the points of what each axis needs more when it moves forth than when it moves back, mm.
+Eigen::Vector3d reversal_of(const model::Machine& machine, const ThreeAxes& axes, const Matrix3Xd& points,
+                            const model::States& at) {
+  Eigen::Vector3d reversal;
+  for (std::size_t i = 0; i < 3; ++i) {
+    model::States forth = at, back = at;
+    forth.direction[axes.axis[i]].setConstant(1);
+    back.direction[axes.axis[i]].setConstant(-1);
+    const auto row = static_cast<Index>(i);
+    reversal[row] =
+        (needed(machine, axes, points, forth).row(row) - needed(machine, axes, points, back).row(row)).mean();
+  }
+  return reversal;
+}
+
+void fit_lost_motion(PrinterCorrection& correction, const model::Machine& machine, const ThreeAxes& axes,
+                     const model::States& at) {
+  constexpr std::size_t kPositions = 3;  // of each axis: the mean of a curve along the axis needs no more
+  const Matrix3Xd points = grid(axes, {kPositions, kPositions, kPositions});
+  const Eigen::Vector3d reversal = reversal_of(machine, axes, points, at);
+  Eigen::Vector3d std = Eigen::Vector3d::Zero();
+  if (machine.fitted && machine.fitted->open_known)
+    std = variance_of(machine, machine.fitted->factor, [&](const model::Machine& moved) -> VectorXd {
+            return reversal_of(moved, axes, points, at);
+          }).cwiseSqrt();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto row = static_cast<Index>(i);
+    if (std[row] <= kMostShare * reversal[row] && maths::kUmPerMm * reversal[row] > kNothing_um)
+      correction.lost_motion[i] = reversal[row];
+  }
+}
+
 /// Heights at the lowest Z, beside the skew. Z is 0 in the middle: homing sets the offset.
 HeightMesh mesh_of(const model::Machine& machine, const ThreeAxes& axes, std::size_t count,
                    const model::States& at, const std::optional<Bed>& bed) {
@@ -342,7 +374,8 @@ bool PrinterCorrection::measured(const std::string& skew) const {
 }
 
 bool PrinterCorrection::empty() const {
-  return !has_mesh() && xy == 0 && xz == 0 && yz == 0 && steps == std::array<double, 3>{1, 1, 1};
+  return !has_mesh() && xy == 0 && xz == 0 && yz == 0 && steps == std::array<double, 3>{1, 1, 1} &&
+         lost_motion == std::array<double, 3>{};
 }
 
 bool heights_are_measured(const model::Machine& machine, const ThreeAxes& axes, const model::States& at) {
@@ -390,6 +423,7 @@ PrinterCorrection printer_correction(const model::Machine& machine, const ThreeA
   PrinterCorrection correction;
   fit_straight_parts(correction, features, straight != nullptr ? *straight : machine, axes, at,
                      straight != nullptr);
+  if (features.lost_motion) fit_lost_motion(correction, straight != nullptr ? *straight : machine, axes, at);
   if (!features.mesh) return correction;
   const ThreeAxes over = over_bed(axes, bed);
   for (const std::size_t count : features.points) {

@@ -41,6 +41,9 @@ struct PrinterCorrection {
   HeightMesh mesh;
   /// Factors for the steps per mm of X, Y and Z.
   std::array<double, 3> steps{1, 1, 1};
+  /// Lost motion of X, Y and Z at a reversal, mm; 0 for an axis without. The firmware moves this much further
+  /// after a reversal.
+  std::array<double, 3> lost_motion{};
   /// Skews and factors that stay 0 and 1, because the last fit did not measure them.
   std::vector<UnmeasuredPart> unmeasured;
   /// True if the last fit measured none of the three skews: the files then contain no skew.
@@ -60,6 +63,7 @@ struct PrinterCorrection {
 struct PrinterFeatures {
   bool skew = true, mesh = true;
   bool steps = false;               // true: the user states the present steps per mm
+  bool lost_motion = false;         // true: the firmware has a command for the backlash of an axis
   std::vector<std::size_t> points;  // numbers of mesh points per axis that are tested, in increasing order
 };
 
@@ -100,7 +104,9 @@ void give_shape(Bed& bed, const model::Machine& machine, const ThreeAxes& axes,
 /// state): values of inputs and motion. Offsets of the axes are not corrected, because homing determines
 /// them. A skew or a factor whose standard uncertainty exceeds half of its value, because no reading
 /// determines its parameters (`open` of the fit record), is not corrected: it is in `unmeasured`. A rotation
-/// about Z is not corrected, because it rotates the whole part. If a bed is given, the
+/// about Z is not corrected, because it rotates the whole part. The lost motion of an axis is the mean of its
+/// reversal error over the working volume, if its whole standard uncertainty is at most half of it, and if
+/// the axis falls short (a firmware does not shorten a move). If a bed is given, the
 /// heights follow its slope, and the mesh covers the region in which the bed was touched. `straight`: the
 /// machine of the skews and steps, if it is not the machine of the heights. Its skews and steps then must
 /// meet the same limit with their whole standard uncertainty.

@@ -22,6 +22,8 @@ void round_to(PrinterCorrection& correction, double tangent_digit, double height
   for (double* tangent : {&correction.xy, &correction.xz, &correction.yz})
     *tangent = rounded(*tangent, tangent_digit);
   correction.mesh.z = correction.mesh.z.unaryExpr([&](double z) { return rounded(z, height_digit); });
+  constexpr double kDigitOfLostMotion_mm = 1e-4;
+  for (double& lost : correction.lost_motion) lost = rounded(lost, kDigitOfLostMotion_mm);
 }
 
 /// The three numbers of Klipper and Marlin, which compute x - y*XY - z*(XZ - XY*YZ) and y - z*YZ.
@@ -169,6 +171,18 @@ std::string skew_words(const PrinterCorrection& correction,
   return text;
 }
 
+/// The line of the lost motion; empty without any. An axis without lost motion keeps the value of the
+/// printer.
+std::string lost_motion_line(const PrinterCorrection& correction, const char* command, const char* needs) {
+  std::string words;
+  for (std::size_t i = 0; i < correction.lost_motion.size(); ++i)
+    if (correction.lost_motion[i] > 0)
+      words += fmt::format(" {}{:.4f}", kLetters[i], correction.lost_motion[i]);
+  return words.empty()
+             ? ""
+             : fmt::format("{}{} ; lost motion at a reversal, mm; needs {}\n", command, words, needs);
+}
+
 std::vector<ConfigurationFile> reprap(const PresentSetting& present, const std::string& name,
                                       PrinterCorrection& correction) {
   round_to(correction, 1e-8, 1e-3);
@@ -183,6 +197,7 @@ std::vector<ConfigurationFile> reprap(const PresentSetting& present, const std::
   code += steps_lines(present, correction, "", false, [](std::size_t i, double next) {
     return fmt::format("M92 {}{:.6f}\n", kLetters[i], next);
   });
+  code += lost_motion_line(correction, "M425", "RepRapFirmware 3.5");
   std::vector<ConfigurationFile> files = {{"vernier.g", code}};
   if (correction.has_mesh()) files.push_back({"vernier_heightmap.csv", reprap_map(correction.mesh)});
   return files;
@@ -220,6 +235,7 @@ std::vector<ConfigurationFile> marlin(const PresentSetting& present, const std::
   code += steps_lines(present, correction, "", false, [](std::size_t i, double next) {
     return fmt::format("M92 {}{:.6f}\n", kLetters[i], next);
   });
+  code += lost_motion_line(correction, "M425 F1", "BACKLASH_COMPENSATION and BACKLASH_GCODE");
   return {{"vernier.gcode", code + "M500\n"}};
 }
 
@@ -242,9 +258,11 @@ PrinterFeatures features_of(Firmware firmware, const PresentSetting& present) {
       break;
     case Firmware::kRepRap:
       features.points = {5, 9, 17, 21};  // 441 points at most
+      features.lost_motion = true;
       break;
     case Firmware::kMarlin:
       features.points = {5, 9, 15};  // GRID_MAX_POINTS: 15
+      features.lost_motion = true;
       break;
     case Firmware::kGrbl:
       features.skew = features.mesh = false;

@@ -32,8 +32,8 @@ PrinterFeatures features_of(Firmware firmware, const PresentSetting& present);
 
 /// Returns the configuration files for a firmware. The values of `correction` are rounded in the same way as
 /// in these files. The sources are listed in tools/docs/exchange.md: Klipper klippy/extras/skew_correction.py
-/// and bed_mesh.py; RepRapFirmware M556, M92 and the height map file; Marlin M852, M420, M421, M92; grbl $100
-/// to $102. `machine_name`: name of the machine for comments in the files.
+/// and bed_mesh.py; RepRapFirmware M556, M92, M425 and the height map file; Marlin M852, M420, M421, M92,
+/// M425; grbl $100 to $102. `machine_name`: name of the machine for comments in the files.
 std::vector<ConfigurationFile> firmware_files(Firmware firmware, const PresentSetting& present,
                                               const std::string& machine_name, PrinterCorrection& correction);
 
