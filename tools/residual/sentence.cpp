@@ -115,6 +115,7 @@ std::string statement(const Finding& f, const SentenceFacts& facts) {
 std::string runs_clause(const Finding& f, const SentenceFacts& facts) {
   if (f.in_all_runs) return ", in all runs";
   if (f.runs < 2) return "";
+  if (f.runs_agreeing == 0) return fmt::format(", but none of {} runs shows it alone", f.runs);
   std::string names;
   constexpr std::size_t kMostNamed = 3;  // in a sentence
   for (std::size_t i = 0; i < facts.disagreeing.size() && i < kMostNamed; ++i)
