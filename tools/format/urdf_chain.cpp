@@ -227,14 +227,16 @@ std::string with_origins(const std::string& text, const std::string& file,
       continue;
     }
     const std::vector<text::AttributeSpan> spans = text::attribute_spans(text, at);
-    for (const auto& [attribute, value] : {std::pair("xyz", xyz), std::pair("rpy", rpy)}) {
+    const auto set = [&](const char* attribute, const std::string& value) {
       const auto span = std::find_if(spans.begin(), spans.end(),
                                      [&](const text::AttributeSpan& one) { return one.name == attribute; });
       if (span != spans.end())
         edits.push_back({span->value_at, span->value_size, value});
       else
         edits.push_back({text::end_of_attributes(text, at), 0, fmt::format(" {}=\"{}\"", attribute, value)});
-    }
+    };
+    set("xyz", xyz);
+    set("rpy", rpy);
   }
   return text::apply_edits(text, std::move(edits));
 }

@@ -134,6 +134,55 @@ void note_odd_target(sheet::Sheet& sheet, const sheet::SheetTable& table,
       sheet.line[row], sheet.rows[row][k], columns[k].name, *missing));
 }
 
+/// Notes a run of which every deviation is exactly 0, beside runs that have other values.
+void note_zero_run(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                   const std::vector<SizedColumn>& columns, std::size_t k) {
+  const Beside beside = beside_of(columns, columns[k].name, columns[k].positions);
+  if (!beside.run) return;
+  struct Run {
+    std::size_t readings = 0, zeros = 0, row = 0;
+  };
+  std::map<std::string, Run> runs;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto value = sheet::number_at(sheet, row, k);
+    if (!value) continue;
+    Run& run = runs.try_emplace(sheet.rows[row][*beside.run], Run{0, 0, row}).first->second;
+    ++run.readings;
+    run.zeros += *value == 0 ? 1 : 0;
+  }
+  const bool others = std::any_of(runs.begin(), runs.end(),
+                                  [](const auto& one) { return 2 * one.second.zeros < one.second.readings; });
+  if (!others || runs.size() > kMostRuns) return;
+  for (const auto& [name, run] : runs)
+    if (run.readings >= kFewestTargets && run.zeros == run.readings)
+      sheet.notes.push_back(fmt::format(
+          "line {}: all {} deviations of run {} are 0, and those of other runs are not: was this run not "
+          "measured? The values are read; if they are wrong, delete them",
+          sheet.line[run.row], run.readings, name));
+}
+
+/// Notes a line of the file with the same position and the same readings of three runs or more as a line
+/// before it.
+void note_repeated_line(sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  constexpr std::size_t kFewestReadings = 3;              // fewer readings are equal by chance
+  std::map<std::size_t, std::vector<std::string>> cells;  // of each line of the file
+  std::map<std::size_t, std::size_t> readings;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    std::vector<std::string>& all = cells[sheet.line[row]];
+    all.insert(all.end(), sheet.rows[row].begin(), sheet.rows[row].end());
+    ++readings[sheet.line[row]];
+  }
+  std::map<std::vector<std::string>, std::size_t> first;
+  for (const auto& [line, all] : cells) {
+    const auto [place, is_new] = first.emplace(all, line);
+    if (is_new || readings[line] < kFewestReadings) continue;
+    sheet.notes.push_back(fmt::format(
+        "line {}: the position and all {} readings are those of line {}: is the line a copy? The values are "
+        "read; if the line is a copy, delete it",
+        line, readings[line], place->second));
+  }
+}
+
 }  // namespace
 
 std::vector<int> directions_by_motion(const std::vector<double>& positions,
@@ -177,12 +226,15 @@ std::string opposite_run_text(const std::string& run, const std::string& other) 
 
 void note_odd_runs(sheet::Sheet& sheet, const sheet::SheetTable& table,
                    const std::vector<SizedColumn>& columns) {
+  note_repeated_line(sheet, table);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (!sized_unit(columns[k])) continue;
-    if (columns[k].use == SizedColumn::Use::kDeviation)
+    if (columns[k].use == SizedColumn::Use::kDeviation) {
       note_opposite_run(sheet, table, columns, k);
-    else if (columns[k].use == SizedColumn::Use::kPosition && columns[k].axis)
+      note_zero_run(sheet, table, columns, k);
+    } else if (columns[k].use == SizedColumn::Use::kPosition && columns[k].axis) {
       note_odd_target(sheet, table, columns, k);
+    }
   }
 }
 

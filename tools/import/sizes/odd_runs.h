@@ -30,7 +30,8 @@ std::optional<std::pair<std::string, std::string>> opposite_run(
 std::string opposite_run_text(const std::string& run, const std::string& other);
 
 /// Notes runs that contradict the other runs of the table: all deviations with the opposite sign; one target
-/// that no other run has, in place of a target that all other runs have (530 for 350).
+/// that no other run has, in place of a target that all other runs have (530 for 350); a run of zeros; a line
+/// with the readings of several runs that repeats a line before it.
 void note_odd_runs(sheet::Sheet& sheet, const sheet::SheetTable& table,
                    const std::vector<SizedColumn>& columns);
 

@@ -122,14 +122,16 @@ std::string named_triple(const sheet::SheetTable& table, const std::vector<Sheet
 std::string point_of_robot(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
                            const Guess& guess) {
   constexpr std::size_t kFewestJoints = 3;  // fewer columns may be temperatures or loads
+  constexpr std::size_t kFewestCoordinates = 2;  // one coordinate is the position of an axis, beside its runs
   std::string options;
-  std::size_t joints = 0;
+  std::size_t joints = 0, coordinates = 0;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words) continue;
     const bool length = is_length(column.unit);
     const bool point = column.name == "X" || column.name == "Y" || column.name == "Z";
     if (point && !length) return "";
+    coordinates += point ? 1 : 0;
     if (point)
       options += fmt::format("{}--column \"{}={}\"", options.empty() ? "" : " ",
                              text::in_small_letters(column.name), table.headings[k].text);
@@ -139,7 +141,7 @@ std::string point_of_robot(const sheet::SheetTable& table, const std::vector<She
                     ? 1
                     : 0;
   }
-  if (options.empty()) options = named_triple(table, columns);
+  if (coordinates < kFewestCoordinates) options = options.empty() ? named_triple(table, columns) : "";
   return joints >= kFewestJoints && !options.empty()
              ? options + " (the point that was measured in the poses of a robot)"
              : "";

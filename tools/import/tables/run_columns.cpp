@@ -79,12 +79,13 @@ bool joins(const std::vector<Token>& tokens, std::size_t k) {
   return behind && before;
 }
 
-/// The name with the minus behind it, which parse_heading takes for a stroke before the unit: "1- [um]".
+/// The name with the minus behind it, which parse_heading takes for a stroke before the unit: "1- [um]",
+/// "1-/um".
 std::string with_its_sign(const sheet::Heading& heading) {
   if (!heading.text.starts_with(heading.name)) return heading.name;
   const std::string rest = text::trimmed(heading.text.substr(heading.name.size()));
   const bool minus =
-      rest.starts_with("-") && (rest.size() == 1 || rest[1] == ' ' || rest[1] == '[' || rest[1] == '(');
+      rest.starts_with("-") && (rest.size() == 1 || std::string_view(" [(/").find(rest[1]) != rest.npos);
   return heading.name + (minus ? " -" : "");
 }
 

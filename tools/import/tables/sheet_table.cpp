@@ -14,6 +14,7 @@
 #include "tools/import/columns/column_values.h"
 #include "tools/import/columns/sheet_columns.h"
 #include "tools/import/tables/assignments_to_try.h"
+#include "tools/import/tables/run_pairs.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"
@@ -370,6 +371,12 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
         fmt::format(
             "the columns of readings are empty ({}): fill in the readings, then import the table again",
             empty));
+  if (const std::string runs = measured ? "" : remedy_for_unknown_runs(table); !runs.empty())
+    throw text::InputError(
+        heading, "",
+        fmt::format("no column of the table is a reading{}; --preview shows the meaning of "
+                    "each column",
+                    runs));
   if (!measured)
     throw text::InputError(
         heading, "",

@@ -13,6 +13,7 @@
 
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/tables/run_columns.h"
+#include "tools/import/tables/run_pairs.h"
 #include "tools/import/tables/run_positions.h"
 #include "tools/import/tables/run_signs.h"
 #include "tools/import/tables/run_units.h"
@@ -227,6 +228,7 @@ void note_late_run(sheet::Sheet& sheet, const sheet::SheetTable& table, std::siz
 
 std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table, const SheetWishes& wishes) {
   if (!table.has_headings) return 0;
+  say_directions_of_pairs(sheet, table);
   std::vector<RunColumn> runs;
   std::vector<std::size_t> others;
   for (std::size_t k = 0; k < table.headings.size(); ++k) {

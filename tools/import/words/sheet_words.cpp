@@ -14,14 +14,56 @@ namespace {
 
 using WordSet = std::set<std::string, std::less<>>;
 
-const WordSet kTargetWords = {
-    "pi",  // P_i of ISO 230-2
-    "soll",         "sollwert",  "target",       "nominal",      "cmd",      "command",      "commanded",
-    "position",     "pos",       "set",          "ziel",         "achse",    "axis",         "machine",
-    "maschine",     "nom",       "sollposition", "zielposition", "nennmaß",  "nennmass",     "nennwert",
-    "nennposition", "sollmaß",   "sollmass",     "kommandiert",  "befohlen", "programmiert", "programmed",
-    "demand",       "setpoint",  "vorgabe",      "vorgabewert",  "weg",      "cote",         "consigne",
-    "cible",        "posizione", "quota",        "nominale",     "comandata"};
+const WordSet kTargetWords = {"pi",  // P_i of ISO 230-2
+                              "soll",
+                              "sollwert",
+                              "target",
+                              "nominal",
+                              "cmd",
+                              "command",
+                              "commanded",
+                              "position",
+                              "pos",
+                              "set",
+                              "ziel",
+                              "achse",
+                              "axis",
+                              "machine",
+                              "maschine",
+                              "nom",
+                              "sollposition",
+                              "zielposition",
+                              "nennmaß",
+                              "nennmass",
+                              "nennwert",
+                              "nennposition",
+                              "sollmaß",
+                              "sollmass",
+                              "kommandiert",
+                              "befohlen",
+                              "programmiert",
+                              "programmed",
+                              "demand",
+                              "setpoint",
+                              "vorgabe",
+                              "vorgabewert",
+                              "weg",
+                              "cote",
+                              "consigne",
+                              "cible",
+                              "posizione",
+                              "quota",
+                              "nominale",
+                              "comandata",
+                              "posici\u00f3n",
+                              "posicion",
+                              "posi\u00e7\u00e3o",
+                              "poloha",
+                              "pozycja",
+                              "positie",
+                              "l\u00e4ge",
+                              "posisjon",
+                              "\u4f4d\u7f6e"};
 const WordSet kMeasuredWords = {"ist",      "istwert",     "istposition", "istmaß",     "istmass",
                                 "measured", "actual",      "act",         "meas",       "mess",
                                 "messwert", "gemessen",    "reading",     "tracker",    "laser",
@@ -57,9 +99,11 @@ const WordSet kStatisticWords = {
     "moyenne", "écart-type", "mittelwerts", "umkehrspanne", "umkehrspannen", "umkehrfehler", "umkehrspiel",
     // Signs of a mean and of a standard deviation; Ø has no small letter here.
     "x\u0304", "x\u0305", "ø", "Ø", "⌀", "∅", "σ", "2σ", "3σ"};
-const WordSet kForthWords = {"1",        "+1",      "+",      "forward",  "fwd",    "forth", "up",   "pos",
-                             "positive", "positiv", "vor",    "vorwärts", "hin",    "auf",   "plus", "cw",
-                             "aller",    "\u2191",  "\u2192", "hinfahrt", "hinweg", "andata"};
+const WordSet kForthWords = {"1",      "+1",       "+",          "forward", "fwd",     "forth",
+                             "up",     "pos",      "positive",   "positiv", "vor",     "vorwärts",
+                             "hin",    "auf",      "plus",       "cw",      "aller",   "\u2191",
+                             "\u2192", "hinfahrt", "hinweg",     "andata",  "vorlauf", "ida",
+                             "heen",   "tam",      "prz\u00f3d", "fram",    "frem",    "\u6b63\u5411"};
 const WordSet kBackWords = {"-1",
                             "-",
                             "backward",
@@ -85,6 +129,19 @@ const WordSet kBackWords = {"-1",
                             "ab",
                             "retour",
                             "ritorno",
+                            "r\u00fccklauf",
+                            "ruecklauf",
+                            "dn",
+                            "vuelta",
+                            "volta",
+                            "terug",
+                            "zp\u011bt",
+                            "ty\u0142",
+                            "powr\u00f3t",
+                            "tillbaka",
+                            "tilbake",
+                            "tilbage",
+                            "\u53cd\u5411",
                             "minus",
                             "ccw",
                             "\u2212",
@@ -96,11 +153,16 @@ const WordSet kBackWords = {"-1",
 const WordSet kRunWords = {"lauf",  "run",     "messlauf", "messreihe", "messung",     "durchgang",
                            "pass",  "passage", "zyklus",   "cycle",     "measurement", "fahrt",
                            "serie", "series",  "reihe",    "corsa",     "ciclo"};
-const WordSet kWayWords = {"hin",        "her",       "zurück",   "zur",       "zurueck", "vor",
-                           "rück",       "rueck",     "forward",  "fwd",       "forth",   "back",
-                           "backward",   "backwards", "bwd",      "hinfahrt",  "hinweg",  "rückfahrt",
-                           "rueckfahrt", "rückweg",   "vorwärts", "rückwärts", "aller",   "retour",
-                           "andata",     "ritorno"};
+const WordSet kWayWords = {
+    "hin",       "her",        "zurück",       "zur",         "zurueck",    "vor",      "rück",
+    "rueck",     "forward",    "fwd",          "forth",       "back",       "backward", "backwards",
+    "bwd",       "hinfahrt",   "hinweg",       "rückfahrt",   "rueckfahrt", "rückweg",  "vorwärts",
+    "rückwärts", "aller",      "retour",       "andata",      "ritorno",    "vorlauf",  "r\u00fccklauf",
+    "ruecklauf", "ida",        "vuelta",       "volta",       "heen",       "terug",    "tam",
+    "zp\u011bt", "prz\u00f3d", "ty\u0142",     "powr\u00f3t", "fram",       "tillbaka", "tilbake",
+    "frem",      "tilbage",    "\u6b63\u5411", "\u53cd\u5411"};
+/// Words of an axis beside its letter.
+const WordSet kAxisWords = {"axis", "achse", "axe", "asse", "eje", "eixo", "osa", "o\u015b", "axel", "akse"};
 
 }  // namespace
 
@@ -244,7 +306,7 @@ std::set<std::string> axes_of_title_cells(const sheet::Sheet& sheet, const sheet
   };
   for (std::size_t k = 0; k < words.size(); ++k) {
     const std::string small = text::in_small_letters(words[k]);
-    if (small != "axis" && small != "achse" && small != "axe") continue;
+    if (!kAxisWords.contains(small)) continue;
     // "Achse" and "X" may be in separate cells.
     const std::size_t next = k + 1 < words.size() && words[k + 1].empty() ? k + 2 : k + 1;
     if (k > 0 && letter(words[k - 1]))
