@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<std::pair<const char*, const char*>, 6> kInstrument = {{
     {"drift", "The instrument drifts."},
     {"step", "The readings of the instrument change in steps."},
-    {"set-up", "The instrument was set up anew between the runs."},
+    {"set-up", "The instrument was set up anew, or the machine changed, between the runs."},
     {"outliers", "Some readings are outliers."},
     {"clock", "Positions and readings were recorded at different times."},
     {"readings", "The readings do not fit this machine (wrong file, unit, sign or column)."},

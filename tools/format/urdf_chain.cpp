@@ -219,7 +219,7 @@ std::string with_origins(const std::string& text, const std::string& file,
     if (!joint || text.compare(at, std::char_traits<char>::length(place.name()), place.name()) != 0)
       throw text::InputError({file, 1}, name,
                              "this joint cannot be found again in the text; save the file as UTF-8 without a "
-                             "byte order mark");
+                             "byte order mark, and with encoding=\"UTF-8\" in its first line");
     const std::string xyz = origin_xyz(frame), rpy = origin_rpy(frame);
     if (!origin) {
       const std::size_t end = text.find('>', text::end_of_attributes(text, at));

@@ -37,7 +37,9 @@ struct RuleText {
 const RuleText& text_of(SafetyRule rule) {
   static const std::array<RuleText, kSafetyRuleCount> kTexts = {{
       {"correction", "of the working volume",
-       "errors above 1 % of the volume show that the file describes another machine", 0.01},
+       "errors above 1 % of the volume show that the file describes another machine, or a tool point that "
+       "was not known",
+       0.01},
       {"max-correction", "of maxcorrection", "the board limits a larger correction to maxcorrection", 1},
       {"cancellation", "times the correction",
        "terms ten times larger than their sum are valid only where they were measured together", 10},

@@ -214,6 +214,9 @@ struct VerdictThresholds {
   /// `of_foreseen`: the search was not linear if the fit of this effect leaves at most this fraction of the
   /// share that the search foresaw.
   double nearly_all = levels.negligible, of_foreseen = levels.most;
+  /// Largest structure in a residual of the size of the noise, as a share of the mean square that a certain
+  /// step removes.
+  double small_structure = levels.small;
   /// Number of steps of the readings from which an effect that changes in time is a candidate only.
   std::size_t most_steps = levels.most_steps;
   /// Number of degrees of freedom above which a noise that is larger than the stated uncertainty is accepted.

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/diagnose/doubts/between_runs.h"
+
+#include <cmath>
+#include <map>
+
+#include "tools/diagnose/doubts/shape.h"
+
+namespace vernier::diagnose {
+namespace {
+
+/// The columns of the effect if its inputs and the time never changed, separately for each run. No columns if
+/// the rows have one run.
+Eigen::MatrixXd one_size_for_each_run(const Evidence& evidence, const effects::Candidate& candidate,
+                                      const std::vector<double>& scanned) {
+  model::States constant = evidence.measurement().states;
+  for (std::size_t k = 0; k < constant.input.size(); ++k)
+    constant.input[k].setConstant(evidence.reference_of(k) + 1);  // where an effect of this input is not 0
+  constant.time.setConstant(evidence.time_range().high);
+  const Eigen::MatrixXd all = ColumnMaker(evidence).raw_at(candidate, scanned, constant);
+  std::map<std::size_t, std::vector<Eigen::Index>> runs;
+  for (std::size_t i = 0; i < evidence.rows().size(); ++i)
+    runs[constant.run[evidence.rows()[i]]].push_back(static_cast<Eigen::Index>(i));
+  if (runs.size() < 2) return {};
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Zero(all.rows(), all.cols() * static_cast<Eigen::Index>(runs.size()));
+  Eigen::Index at = 0;
+  for (const auto& [run, readings] : runs) {
+    for (const Eigen::Index reading : readings)
+      columns.row(reading).segment(at, all.cols()) = all.row(reading);
+    at += all.cols();
+  }
+  return columns;
+}
+
+}  // namespace
+
+bool change_between_runs_explains(const Evidence& evidence, const Pool& pool,
+                                  const std::vector<std::size_t>& items, std::size_t position,
+                                  double distance) {
+  const std::size_t item = items[position];
+  const auto in_time = [&](std::size_t one) {
+    return pool.candidate(one).choice.runs.empty() &&
+           change_in_time(drivers_of(evidence.machine(), pool.candidate(one)));
+  };
+  if (!in_time(item)) return false;
+  const effects::Candidate& candidate = pool.candidate(item);
+  Eigen::MatrixXd of_runs = one_size_for_each_run(evidence, candidate, pool[item].scored.scanned);
+  if (of_runs.cols() == 0 || !of_runs.allFinite() || !(of_runs.norm() > 0)) return false;
+  evidence.whiten(of_runs);
+  std::vector<std::size_t> others;
+  Eigen::MatrixXd named(of_runs.rows(), 0);
+  std::size_t scanned = 0;
+  for (const std::size_t one : items) {
+    const auto& place = pool.candidate(one).choice.place;
+    const bool alike = one == item || (in_time(one) && place && candidate.choice.place &&
+                                       moves_alike(evidence, *place, *candidate.choice.place));
+    if (!alike) {
+      others.push_back(one);
+      continue;
+    }
+    const Eigen::MatrixXd columns = evidence.columns(pool.candidate(one), pool[one].scored.scanned);
+    named.conservativeResize(Eigen::NoChange, named.cols() + columns.cols());
+    named.rightCols(columns.cols()) = columns;
+    scanned += pool[one].scored.scanned.size();
+  }
+  const Eigen::MatrixXd beside = pool.columns(others);
+  const double price = std::log(static_cast<double>(evidence.residual().size()));
+  const auto lowers = [&](const Eigen::MatrixXd& columns, std::size_t unknowns) {
+    const Gain gain = gain_of(evidence, columns, beside);
+    return gain.chi_square - price * (gain.rank + static_cast<double>(unknowns));
+  };
+  return lowers(of_runs, 0) > lowers(named, scanned) - distance;
+}
+
+}  // namespace vernier::diagnose
