@@ -366,6 +366,62 @@ async function robot(page) {
   await words(page, '#export-result', 'difference from the machine file at 1000 poses');
   assert.deepEqual(await files(page, 'export-result'), [['urdf-arm/robot.urdf', 'robot.urdf']]);
   assert.ok(readFileSync(join(folder, 'urdf-arm/robot.urdf'), 'utf8').includes('q6'));
+  await jointsOfOtherNames(page);
+}
+
+/** Poses of the arm at six joint positions each, with headings of the user's own. */
+const poses = (headings) =>
+  `${headings.map((one) => `${one} [deg]`).join(';')};x [mm];y [mm];z [mm]\n${Array.from(
+    { length: 12 },
+    (_, i) => `${Array.from({ length: 6 }, (__, k) => ((i * 37 + k * 23) % 90) - 45).join(';')};${100 + i};${200 - i};${1500 + 2 * i}`,
+  ).join('\n')}\n`;
+
+const kOwnNames = ['alpha', 'beta', 'gamma', 'wrist_1', 'wrist_2', 'wrist_3'];
+
+/** Tables whose joints have other names than those of the machine file: every way on is a button. */
+async function jointsOfOtherNames(page) {
+  const noTerminal = async () => {
+    for (const name of ['compare', 'diagnose', 'project']) {
+      await view(page, name);
+      // The history shows commands.
+      const said = await page.evaluate(
+        `(() => { const one = document.getElementById('view-${name}').cloneNode(true); one.querySelector('#history')?.remove(); return one.textContent; })()`,
+      );
+      assert.ok(!/vernier import|--[a-z]/.test(said), `${name}: ${said.match(/.{0,80}(vernier import|--[a-z]).{0,80}/)?.[0]}`);
+    }
+  };
+  const readings = (name) => readFileSync(join(folder, name), 'utf8').split('\n')[0];
+  const named = readFileSync(join(folder, 'arm.xml'), 'utf8').match(/<machineaxes>\s*<(\w+)/)[1];
+  await view(page, 'project');
+  await page.drop([{ name: 'numbered.csv', text: poses(['a1', 'a2', 'a3', 'a4', 'a5', 'a6']) }]);
+  await measured(page, 'numbered_read.csv');
+  await words(page, '#stood-room', 'No axis of the machine has a column in numbered_read.csv');
+  await view(page, 'compare');
+  await words(page, '#view-compare .error', 'press "Read the columns as the axes of the machine"');
+  await noTerminal();
+  await page.click('#by-machine');
+  await measured(page, 'numbered_read_read.csv');
+  await page.until("document.getElementById('stood-room').textContent === '' && document.body.dataset.subject === 'yes'", 'the rows');
+  assert.ok(readings('numbered_read_read.csv').startsWith(`${named}[deg],`), readings('numbered_read_read.csv'));
+  // Names that say nothing: the assignment in the order of the machine file is shown, and confirmed.
+  await page.drop([{ name: 'greek.csv', text: poses(kOwnNames) }]);
+  await measured(page, 'greek_read.csv');
+  await page.click('#by-machine');
+  await words(page, '#stood-room', `${named}: "alpha[deg]"`);
+  await noTerminal();
+  await picture(page, 'robot_columns', '#assignment-is-right');
+  await page.click('#assignment-is-right');
+  await measured(page, 'greek_read_read.csv');
+  await page.until("document.body.dataset.subject === 'yes'", 'the rows');
+  // One of the columns is of no use: the others are named by hand, and the table says how the axes are called.
+  await page.drop([{ name: 'five.csv', text: poses(kOwnNames).replace('wrist_3 [deg]', 'wrist_3 [s]') }]);
+  await measured(page, 'five_read.csv');
+  await page.click('#by-machine');
+  await words(page, '#stood-room .error', 'Press "Choose the columns by hand"');
+  await noTerminal();
+  await page.click('#by-hand');
+  await words(page, '#axes-of-machine', `${named} [deg]`);
+  assert.ok(await page.evaluate("document.querySelectorAll('#sheet-columns tbody tr').length >= 9"), 'its columns');
 }
 
 /** A small screen with a long formula, and paper: nothing is wider than the page, no number is divided. */
@@ -432,4 +488,4 @@ async function looks(page) {
 }
 
 assert.ok(bin && data);
-await journey({ shop, printer, robot, again, looks }, { shop: /422/, printer: /422/, again: /422/ });
+await journey({ shop, printer, robot, again, looks }, { shop: /422/, printer: /422/, robot: /422/, again: /422/ });

@@ -62,10 +62,20 @@ export function pageWords(message, typed) {
     .replace(/--([a-z][\w-]*)/g, (whole, name) => (has(name) ? field(name) : whole));
 }
 
+/** Why rows cannot be read, in the words of the page: a command for the terminal becomes the panel of Project that runs it. */
+export const refusalWords = (refusal) =>
+  refusal
+    .replace(
+      /: vernier import table .*? --machine MACHINE\.xml -o NEW\.csv/,
+      ': under Project, press "Read the columns as the axes of the machine"',
+    )
+    .replace(/: vernier import table .*? -o NEW\.csv/, ' under Project')
+    .replace(/give the folder of the image \(--images [A-Z]+\)/, 'take the folder of the image into the folder of the project');
+
 /** What stands where there is nothing to show yet: what to choose, or why the chosen rows cannot be read. */
 export const nothingYet = () =>
   store.refusal
-    ? el('p', { class: 'error', role: 'alert' }, store.refusal, ' ', el('a', { href: '#project' }, 'Project'))
+    ? el('p', { class: 'error', role: 'alert' }, refusalWords(store.refusal), ' ', el('a', { href: '#project' }, 'Project'))
     : el(
         'p',
         { class: 'note empty' },

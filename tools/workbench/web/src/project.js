@@ -304,7 +304,10 @@ export function projectView(root) {
   root.append(
     panel('Take in', zone, error, notes),
     box,
-    stoodPanel(choose),
+    stoodPanel(choose, (name, done) => {
+      box.scrollIntoView({ block: 'nearest' });
+      return importSheet(box, name, done, true);
+    }),
     beginPanel(choose),
     panel(
       'Files',

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { choice, el } from '../../../report/web/src/dom.js';
-import { freeName, postJson, run } from './api.js';
+import { freeName, getJson, postJson, run } from './api.js';
 import { optionFields } from './options.js';
 import { button, gate, guarded, pageWords, panel } from './parts.js';
 import { store } from './store.js';
@@ -24,8 +24,8 @@ function likely(preview) {
 const withUnit = (one) => `${one.name}${one.unit ? `[${one.unit}]` : ''}`;
 
 /** What the table of columns and the preview say; all other options of the import have fields. */
-const kInTable = ['file', 'output', 'column', 'deviation', 'leave', 'sheet'];
-const kOfPreview = [...kInTable, 'separator', 'decimal', 'skip', 'header', 'machine'];
+const kInTable = ['file', 'output', 'column', 'deviation', 'leave', 'sheet', 'machine'];
+const kOfPreview = [...kInTable, 'separator', 'decimal', 'skip', 'header'];
 
 /** The name of a sheet as a part of the name of a file. */
 const inFileName = (sheet) => sheet.replace(/[\s/\\:]+/g, '_');
@@ -41,6 +41,17 @@ function onPage(message) {
     .replace(/--leave\b/g, '"left out"');
   return pageWords(words, 'vernier import table');
 }
+
+/** The axes of a machine file with their units: "Ja1 [deg], Ja2 [deg]"; empty if they cannot be read. */
+const axesOf = (machine) =>
+  getJson('/api/names', { machine }).then(
+    ({ names }) =>
+      names
+        .filter((one) => one.what === 'axis position')
+        .map((one) => `${one.name} [${one.unit}]`)
+        .join(', '),
+    () => '',
+  );
 
 /** The options of an import without the preview's help: a tracker's and a probe's table. */
 const ofPreview = (preview) => ({
@@ -93,12 +104,14 @@ function columnRow(column, k, preview, change) {
 /**
  * Takes a spreadsheet, a tracker's or a probe's table: what is understood without help is imported at once, what is not is
  * asked for here. `done(measurements)` is called with the names of the measurement files: one for each sheet that was imported.
+ * `asks`: the meaning of the columns is asked for although nothing is missing.
  */
-export async function importSheet(box, name, done) {
+export async function importSheet(box, name, done, asks = false) {
   const said = new Map(),
     read_into = new Map(), // the measurement file of each sheet that was imported
     tables = new Set(); // the sheets to import; two sheets that are read as one table count as one
   let kind = null,
+    axes = '', // of the chosen machine
     sheet = '', // of a workbook; empty: the program's choice
     turn = 0;
   const error = el('div', {});
@@ -214,6 +227,7 @@ export async function importSheet(box, name, done) {
       panel(
         `What is in ${name}?`,
         el('p', { id: 'how-read' }, now.how),
+        axes ? el('p', { class: 'note', id: 'axes-of-machine' }, `Axes of the machine: ${axes}.`) : null,
         now.message && kind === 'table' ? el('p', { class: 'error', role: 'alert', id: 'sheet-message' }, onPage(now.message)) : null,
         now.message ? el('div', { class: 'controls', id: 'sheet-confirmations' }, confirmations(now)) : null,
         el(
@@ -267,12 +281,13 @@ export async function importSheet(box, name, done) {
   }
   /** Imports the table or sheet at once if nothing is missing, else asks. */
   async function begin() {
+    if (store.machine) axes = await axesOf(store.machine);
     error.replaceChildren();
     box.replaceChildren(error);
     const first = await guarded(error, ask);
     if (!first) return refused();
     kind = likely(first);
-    return first.message === null && kind === 'table' ? doImport(first) : draw(first);
+    return first.message === null && kind === 'table' && !asks ? doImport(first) : draw(first);
   }
   await begin();
 }
