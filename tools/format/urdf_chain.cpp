@@ -152,7 +152,7 @@ std::vector<UrdfJoint> UrdfTree::way_to(const std::string& link) const {
   return way;
 }
 
-std::string UrdfTree::only_end() const {
+std::vector<std::string> UrdfTree::ends() const {
   std::vector<std::string> ends;
   std::ptrdiff_t most = 1;
   for (const std::string& link : links_) {
@@ -167,6 +167,11 @@ std::string UrdfTree::only_end() const {
     ends.push_back(link);
   }
   if (ends.empty()) throw text::InputError({file_, 1}, "robot", "the URDF has no joint that moves");
+  return ends;
+}
+
+std::string UrdfTree::only_end() const {
+  const std::vector<std::string> ends = this->ends();
   if (ends.size() > 1)
     throw text::InputError(fmt::format("{}: the arm has several end links, choose one with --tip: {}", file_,
                                        text::joined(ends, ", ")));

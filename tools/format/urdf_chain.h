@@ -35,6 +35,10 @@ class UrdfTree {
   /// Returns the joints from the root link to a link. Empty for the root link.
   std::vector<UrdfJoint> way_to(const std::string& link) const;
 
+  /// Returns the end links of the chains with the most moving joints, by name. Throws InputError if no joint
+  /// moves.
+  std::vector<std::string> ends() const;
+
   /// Returns the end link of the chain with the most moving joints. Throws InputError if there are several.
   std::string only_end() const;
 

@@ -367,6 +367,44 @@ async function robot(page) {
   assert.deepEqual(await files(page, 'export-result'), [['urdf-arm/robot.urdf', 'robot.urdf']]);
   assert.ok(readFileSync(join(folder, 'urdf-arm/robot.urdf'), 'utf8').includes('q6'));
   await jointsOfOtherNames(page);
+  await severalEnds(
+    page,
+    (ends) =>
+      `<robot name="arm"><link name="l0"/>${links}${axes.map((one, k) => joint(k + 1, `l${k}`, `l${k + 1}`, one)).join('')}${ends}</robot>`,
+  );
+}
+
+/** An arm with a tool and a camera: the page asks which of them is measured. */
+async function severalEnds(page, arm) {
+  const end = (name, x) =>
+    `<link name="${name}"/><joint name="to_${name}" type="fixed"><parent link="l6"/><child link="${name}"/><origin xyz="${x} 0 0.1"/></joint>`;
+  const two = arm(end('camera', '0.05') + end('tool0', '0'));
+  await view(page, 'project');
+  await page.drop([{ name: 'two.urdf', text: two }]);
+  await words(page, '#drop-error .question', 'several end links');
+  assert.deepEqual(await page.evaluate("[...document.querySelectorAll('#drop-error button')].map((one) => one.textContent)"), [
+    'tool0',
+    'camera',
+    'Not now',
+  ]);
+  await picture(page, 'robot_ends', '#drop-error');
+  await page.click('#drop-error [data-answer=""]');
+  await page.until("!document.querySelector('.question')", 'the question to go');
+  // The button in the table of files asks the same.
+  await page.click('[data-file="two.urdf"] .use');
+  await page.click('#drop-error [data-answer="tool0"]');
+  await chosen(page, 'two.xml');
+  assert.ok((await text(page, '#history')).includes('vernier new robot --urdf two.urdf --tip tool0 -o two.xml'));
+  assert.equal(await text(page, '#drop-error'), '');
+  // A refusal of a drop goes when another panel has made what was refused.
+  await page.drop([{ name: 'broken.urdf', text: '<robot' }]);
+  await words(page, '#drop-error .error', 'broken.urdf');
+  await page.choose('#measurement', '');
+  await page.evaluate("document.getElementById('new-machine').open = true");
+  await page.type('#new-name', 'other');
+  await page.click('#make-machine');
+  await chosen(page, 'other.xml');
+  assert.equal(await text(page, '#drop-error'), '');
 }
 
 /** Poses of the arm at six joint positions each, with headings of the user's own. */

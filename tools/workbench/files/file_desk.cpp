@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/format/csv_file.h"
+#include "tools/format/urdf_chain.h"
 #include "tools/import/logs/printer_file.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
@@ -34,7 +35,7 @@ const FileDesk::Route* FileDesk::find(const ApiRequest& request) {
       {"POST", "/api/predict", &FileDesk::predict}, {"POST", "/api/explain", &FileDesk::explain},
       {"GET", "/api/names", &FileDesk::names},      {"POST", "/api/term", &FileDesk::term},
       {"GET", "/api/kind", &FileDesk::kind},        {"POST", "/api/sheet", &FileDesk::sheet},
-      {"GET", "/api/safety", &FileDesk::safety}};
+      {"GET", "/api/robot", &FileDesk::robot},      {"GET", "/api/safety", &FileDesk::safety}};
   for (const Route& route : kRoutes)
     if (request.method == route.method && request.path == route.path) return &route;
   return nullptr;
@@ -71,6 +72,13 @@ ApiReply FileDesk::kind(const ApiRequest& request) {
   else if (importer::is_printer_file(text))
     kind = "printer";
   return json_reply({{"kind", kind}});
+}
+
+/// {"ends"}: the links of the description of a robot (URDF) that can be the end of its arm.
+ApiReply FileDesk::robot(const ApiRequest& request) {
+  const std::string name = request.word("name");
+  return json_reply(
+      {{"ends", format::UrdfTree(text::read_file(project_.existing(name).string()), name).ends()}});
 }
 
 ApiReply FileDesk::sheet(const ApiRequest& request) {

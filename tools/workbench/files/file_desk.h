@@ -30,6 +30,7 @@ class FileDesk {
   ApiReply names(const ApiRequest& request);
   ApiReply term(const ApiRequest& request);
   ApiReply kind(const ApiRequest& request);
+  ApiReply robot(const ApiRequest& request);
   ApiReply sheet(const ApiRequest& request);
   ApiReply safety(const ApiRequest& request);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
-import { deleteFile, fileAddress, freeName, postJson, putFile, refresh, run } from './api.js';
+import { deleteFile, fileAddress, freeName, getJson, postJson, putFile, refresh, run } from './api.js';
 import { beginPanel } from './begin.js';
 import { importInstrument } from './instrument.js';
 import { optionFields } from './options.js';
@@ -40,22 +40,6 @@ async function importFile(name, kind, box, repair, beside = []) {
   return importSheet(box, name, (outputs) => choose(store.machine, [...beside, ...outputs]));
 }
 
-/** A machine file for the description of a robot. */
-async function machineOfRobot(name) {
-  const stem = name.replace(/\.[^.]*$/, ''),
-    output = freeName(stem, '.xml');
-  await run({ command: 'new', type: 'robot', urdf: name, output, measurements: freeName(`${stem}_survey`, '.csv') });
-  return choose(output, store.measurements);
-}
-
-/** Uses a file of the project: chooses it, or makes a measurement or a machine file of it. */
-async function use(name, kind, box, repair, beside = []) {
-  if (kind === 'machine') return choose(name, store.measurements);
-  if (kind === 'robot') return machineOfRobot(name);
-  if (kind === 'measurement') return choose(store.machine, [...beside, name]);
-  return importFile(name, kind, box, repair, beside);
-}
-
 /** Asks in a box, with a button for each answer [label, value]; the first answer is the usual one. */
 function question(box, words, answers) {
   return new Promise((answered) => {
@@ -80,7 +64,36 @@ function question(box, words, answers) {
     );
     box.append(node);
     node.querySelector('button').focus();
+    node.scrollIntoView({ block: 'nearest' });
   });
+}
+
+/** A machine file for the description of a robot; which of several end links is the tool is asked in a box. */
+async function machineOfRobot(name, ask) {
+  const stem = name.replace(/\.[^.]*$/, ''),
+    { ends } = await getJson('/api/robot', { name }),
+    // The usual name of the tool's link (ROS-Industrial) first.
+    order = [...ends.filter((one) => one === 'tool0'), ...ends.filter((one) => one !== 'tool0')];
+  let tip = {};
+  if (order.length > 1) {
+    const link = await question(ask, `${name}: the arm has several end links. Which of them carries the tool that is measured?`, [
+      ...order.map((one) => [one, one]),
+      ['Not now', ''],
+    ]);
+    if (!link) return null;
+    tip = { tip: link };
+  }
+  const output = freeName(stem, '.xml');
+  await run({ command: 'new', type: 'robot', urdf: name, ...tip, output, measurements: freeName(`${stem}_survey`, '.csv') });
+  return choose(output, store.measurements);
+}
+
+/** Uses a file of the project: chooses it, or makes a measurement or a machine file of it. `ask`: the box for a question. */
+async function use(name, kind, { box, repair, ask, beside = [] }) {
+  if (kind === 'machine') return choose(name, store.measurements);
+  if (kind === 'robot') return machineOfRobot(name, ask);
+  if (kind === 'measurement') return choose(store.machine, [...beside, name]);
+  return importFile(name, kind, box, repair, beside);
 }
 
 /** Does a command of the history read a file or write it? */
@@ -139,7 +152,7 @@ async function take(file, { repair, box, beside, ask, notes }) {
   const kind = await kindOfName(name),
     advice = adviceOn(kind);
   if (!advice) {
-    await use(name, kind, box, repair, beside);
+    await use(name, kind, { box, repair, ask, beside });
     return;
   }
   const note = el('p', { class: 'note', role: 'status', 'data-advice': name }, `${name} ${advice} `);
@@ -240,6 +253,11 @@ export function projectView(root) {
     notes = el('div', { id: 'drop-notes' }),
     box = el('div', { id: 'import-box' });
   const repair = optionFields('import ballbar', ['files', 'output']);
+  /** Another panel has made what was refused here: the refusal is out of date. */
+  const chooseAnew = (machine, measurements) => {
+    error.replaceChildren();
+    return choose(machine, measurements);
+  };
   const pick = el('input', { type: 'file', multiple: '', id: 'file-input', 'aria-label': 'Files to take into the project' });
   const zone = el(
     'div',
@@ -286,7 +304,7 @@ export function projectView(root) {
   const act = {
     use: async (name, kind) => {
       error.replaceChildren();
-      await use(name, kind, box, repair.values()).catch((why) => showError(error, why));
+      await use(name, kind, { box, repair: repair.values(), ask: error }).catch((why) => showError(error, why));
       // The panel that asks about a file is above the table.
       if (box.childElementCount) box.scrollIntoView({ block: 'nearest' });
     },
@@ -304,11 +322,11 @@ export function projectView(root) {
   root.append(
     panel('Take in', zone, error, notes),
     box,
-    stoodPanel(choose, (name, done) => {
+    stoodPanel(chooseAnew, (name, done) => {
       box.scrollIntoView({ block: 'nearest' });
       return importSheet(box, name, done, true);
     }),
-    beginPanel(choose),
+    beginPanel(chooseAnew),
     panel(
       'Files',
       asked,
