@@ -55,6 +55,25 @@ TEST(SheetShape, DirectionsAreReadOrNoted) {
               Not(HasSubstr("may contain")));
 }
 
+TEST(SheetShape, ANoteOfDirectionsNamesTheOptionThatReadsThem) {
+  const std::string rows =
+      "Soll X [mm];Soll Y [mm];Anfahrt X;Anfahrt Y;Tracker X [mm];Tracker Y [mm]\n"
+      "0;0;;+;0,001;0,002\n50;9;+;+;50,002;9,003\n0;4;-;-;0,003;4,004\n";
+  const std::string plain = read(rows);
+  EXPECT_THAT(plain,
+              HasSubstr("is not read as directions: give --column \"dirX=Anfahrt X\"; write 0 into its "
+                        "empty cells if the direction is not known"));
+  EXPECT_THAT(plain, HasSubstr("is not read as directions: give --column \"dirY=Anfahrt Y\"\n"));
+  SheetWords words;
+  words.columns = {"dirX=Anfahrt X", "dirY=Anfahrt Y"};
+  EXPECT_THAT(read(rows, words),
+              HasSubstr("the direction is not known, as before the first motion of the axis, write 0"));
+  EXPECT_THAT(read("Soll X [mm];Soll Y [mm];Anfahrt X;Anfahrt Y;Tracker X [mm];Tracker Y [mm]\n"
+                   "0;0;0;+;0,001;0,002\n50;9;+;+;50,002;9,003\n0;4;-;-;0,003;4,004\n",
+                   words),
+              testing::StartsWith("X[mm],Y[mm],dirX,dirY,x[mm],y[mm]\n0,0,0,1,"));
+}
+
 TEST(SheetShape, ARowWithAnUnknownWordIsNotFilled) {
   SheetWords fill;
   fill.left = {"Nr"};

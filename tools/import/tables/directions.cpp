@@ -456,6 +456,20 @@ void split_runs(sheet::Sheet& sheet, sheet::SheetTable& table) {
 
 namespace {
 
+/// The axis that a column of directions is of: the one in its heading, or the only one of the table; empty:
+/// open.
+std::string axis_of_directions(const std::string& heading, const std::vector<SheetColumn>& columns) {
+  const SheetWishes usual;
+  const Guess guess(usual);
+  std::set<std::string> axes, named;
+  for (const SheetColumn& column : columns)
+    if (column.use == SheetColumn::Use::kColumn && guess.is_axis(column.name)) axes.insert(column.name);
+  for (const std::string& word : text::words_in(heading, " _-.()[]"))
+    if (axes.contains(word)) named.insert(word);
+  const std::set<std::string>& of = named.empty() ? axes : named;
+  return of.size() == 1 ? *of.begin() : "";
+}
+
 /// Notes a column of words that looks like approach directions, if the table has no column of directions.
 void note_direction_not_read(sheet::Sheet& sheet, const sheet::SheetTable& table,
                              const std::vector<SheetColumn>& columns) {
@@ -474,6 +488,17 @@ void note_direction_not_read(sheet::Sheet& sheet, const sheet::SheetTable& table
     const bool words = ends.size() == 2 && sense_said(*ends.begin()) * sense_said(*ends.rbegin()) == -1 &&
                        std::all_of(ends.begin(), ends.end(), says);
     const auto pair = meaning_of(ends);
+    const std::string axis = axis_of_directions(table.headings[k].text, columns);
+    if (words && !axis.empty() && codes.size() == 2 && std::all_of(codes.begin(), codes.end(), says)) {
+      const bool from_first = !sheet.rows[table.first_data][k].empty();
+      sheet.notes.push_back(fmt::format(
+          "\"{0}\" may contain approach directions ({1}) and is not read as directions: give --column "
+          "\"{2}={0}\"{3}",
+          table.headings[k].text, fmt::format("{}, {}", *ends.begin(), *ends.rbegin()),
+          format::axis_column(format::AxisQuantity::kSense, axis),
+          from_first ? "" : "; write 0 into its empty cells if the direction is not known"));
+      continue;
+    }
     if (words || (pair && !pair->doubtful))
       sheet.notes.push_back(fmt::format(
           "\"{}\" may contain approach directions ({}) and is not read as directions: write them into "

@@ -310,9 +310,11 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
   }
   if (is_missing(cell) && !is_sense(column.name) && !(axis && is_failed_formula(cell))) return "";
   if (cell.empty())
-    throw text::InputError(place, column.name,
-                           "the cell of the approach direction is empty; if the value above it applies, give "
-                           "--fill with the heading of this column");
+    throw text::InputError(
+        place, column.name,
+        "the cell of the approach direction is empty; if the direction is not known, as "
+        "before the first motion of the axis, write 0; if the value above it applies, give "
+        "--fill with the heading of this column");
   if (is_sense(column.name))
     if (const int sense = sense_said(cell); sense != 0) return std::to_string(sense);
   if (const auto number = sheet::plain_number(cell, sheet.decimal_comma)) return *number;
