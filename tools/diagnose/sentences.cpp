@@ -62,7 +62,7 @@ std::string check_rows_in_words(const std::vector<LadderStep>& steps, std::size_
   const auto left = [&](const LadderStep& step) { return lengths ? step.check_rms_um : step.check_rms_urad; };
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (!left(steps[i])) return {};
-    way += fmt::format("{}{:.4g}", i == 0 ? "" : i + 1 == steps.size() ? " to " : ", ", *left(steps[i]));
+    way += fmt::format("{}{:.4g}", i == 0 ? "" : " to ", *left(steps[i]));
     if (i > 0 && *left(steps[i]) > *left(steps[i - 1])) worse += (worse.empty() ? "" : ", ") + steps[i].said;
   }
   std::string text =

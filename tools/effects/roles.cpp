@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <pugixml.hpp>
+#include <set>
 
 #include "tools/effects/input_class.h"
 #include "tools/effects/insertion.h"
@@ -92,6 +93,21 @@ double mean_of_cells(const model::CandidateInput& candidate) {
   return count > 0 ? sum / count : 0;
 }
 
+/// True for a column that counts the rows of its table (Nr, No, Lfd_Nr; column_: the heading #): no quantity
+/// that a machine can depend on, and no other file is asked for it.
+bool counts_rows(const model::CandidateInput& candidate) {
+  static const std::set<std::string> kWords = {"nr",    "no",    "num", "nummer", "number", "lfd",  "row",
+                                               "zeile", "index", "idx", "line",   "point",  "punkt"};
+  if (!candidate.unit.empty()) return false;
+  const std::vector<std::string> words = text::words_in(text::in_small_letters(candidate.name), "_.");
+  return (candidate.name == "column_" ||
+          (!words.empty() && std::all_of(words.begin(), words.end(),
+                                         [](const std::string& word) { return kWords.contains(word); }))) &&
+         std::all_of(candidate.value.begin(), candidate.value.end(), [](double value) {
+           return !std::isfinite(value) || (value >= 0 && value == std::floor(value));
+         });
+}
+
 ColumnRole parse_column_role(const std::string& statement) {
   const std::size_t sign = statement.find('=');
   ColumnRole one;
@@ -160,6 +176,7 @@ std::vector<std::string> complete_columns(const model::Machine& machine, model::
   for (const std::string& note : notes_of_missing_directions(machine, rows)) said.push_back(note + ".");
   std::vector<char> excluded(rows.rows(), 0);
   const auto complete = [&](model::CandidateInput& candidate) {
+    if (counts_rows(candidate)) return false;
     const std::vector<Cells> files = cells_of(candidate, rows);
     for (std::size_t file = 0; file < files.size(); ++file)
       if (files[file].is_unusable()) {
@@ -182,12 +199,12 @@ std::vector<std::string> complete_columns(const model::Machine& machine, model::
             files[file].empty, rows.files[file], candidate.name, files[file].first_line));
     }
     if (!without.empty())
-      said.push_back(
-          fmt::format("No column {1} in {0}: these rows count as read at {2:.4g}{3}{4}. If this is not "
-                      "right, add the column "
-                      "(import table --set \"{1}[{4}]=VALUE\").",
-                      text::joined(without, ", "), candidate.name, reference,
-                      candidate.unit.empty() ? "" : " ", candidate.unit));
+      said.push_back(fmt::format(
+          "No column {1} in {0}: these rows count as read at {2:.4g}{3}{4}. If this is not "
+          "right, add the column "
+          "(import table --set \"{1}{5}=VALUE\").",
+          text::joined(without, ", "), candidate.name, reference, candidate.unit.empty() ? "" : " ",
+          candidate.unit, candidate.unit.empty() ? "" : "[" + candidate.unit + "]"));
     for (std::size_t row = 0; row < rows.rows(); ++row) {
       double& value = candidate.value[static_cast<Eigen::Index>(row)];
       if (std::isfinite(value)) continue;

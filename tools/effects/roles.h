@@ -39,7 +39,8 @@ std::vector<std::string> notes_of_missing_directions(const model::Machine& machi
 /// Gives every undeclared column a value in every row, so that all models of a search are fitted to the same
 /// rows. In the rows of a file without the column, the column has the reference of an input
 /// (usual_reference()), as an input that a file does not record. Rows with an empty cell in a file that has
-/// the column are excluded; a column with more than a fifth of its cells empty in a file is not used instead.
+/// the column are excluded; a column with more than a fifth of its cells empty in a file is not used instead,
+/// nor is a column that counts the rows (Nr).
 /// Returns one sentence for each change, and for each file without approach directions that another file has
 /// (notes_of_missing_directions). `machine`: the machine of `rows`.
 std::vector<std::string> complete_columns(const model::Machine& machine, model::Measurement& rows);

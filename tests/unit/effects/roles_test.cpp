@@ -102,6 +102,19 @@ TEST_F(Roles, EachUndeclaredColumnGetsAValueInEveryRow) {
   EXPECT_TRUE(complete_columns(machine(), rows).empty()) << "nothing is left to do";
 }
 
+TEST_F(Roles, AColumnThatCountsTheRowsIsNoInputAndNoFileIsAskedForIt) {
+  Measurement rows = parse_measurement(
+      "Nr,Lfd_Nr,column_,X[mm],x[mm],level,No_load\n1,1,1,0,0,1,1\n2,2,2,100,100,2,2\n3,3,3,200,200,3,1\n",
+      "laser.csv", machine());
+  append_measurement(rows, parse_measurement("X[mm],x[mm]\n0,0\n600,600\n", "tracker.csv", machine()), false);
+  const std::vector<std::string> said = complete_columns(machine(), rows);
+  ASSERT_EQ(rows.candidates.size(), 2u);
+  EXPECT_EQ(rows.candidates[0].name, "level");
+  EXPECT_EQ(rows.candidates[1].name, "No_load");
+  ASSERT_EQ(said.size(), 2u);
+  EXPECT_NE(said[0].find("(import table --set \"level=VALUE\")"), std::string::npos) << said[0];
+}
+
 TEST_F(Roles, FileWithoutTheDirectionsOfAnotherIsNamed) {
   Measurement rows =
       parse_measurement("X[mm],x[mm],dirX\n0,0,1\n100,100,1\n100,100,-1\n", "laser.csv", machine());

@@ -172,6 +172,22 @@ async function shop(page) {
   await programAndMap(page);
   await positioning(page);
   await sheetsOfAWorkbook(page);
+  await assumptions(page);
+}
+
+/** What the program assumed is said in the words of the page, and the file can be read differently. */
+async function assumptions(page) {
+  await view(page, 'project');
+  await page.drop([
+    {
+      name: 'titled.csv',
+      text: 'Abweichungen in µm (Ist - Soll)\nLage: Y=200, Z=-190 mm\nX Soll [mm];Abweichung X\n0;1,5\n100;2,5\n200;4,0\n',
+    },
+  ]);
+  await words(page, '#imported', '"Y[mm]=POSITION" in the field "set"');
+  assert.ok(!(await text(page, '#imported')).includes('--'), await text(page, '#imported'));
+  await page.click('[data-file="titled_read.csv"] .differently');
+  await page.until("document.querySelectorAll('#sheet-columns tbody tr').length >= 4", 'its columns');
 }
 
 /** A workbook with a sheet for each axis: every sheet is imported, as the command line can. */
@@ -259,6 +275,9 @@ async function printer(page) {
   await page.click('#do-import');
   await measured(page, 'heightmap_read.csv');
   await page.choose('#measurement', 'printer_read.csv');
+  // A noise that is not known is no number.
+  await view(page, 'compare');
+  await words(page, '#guide-hint', 'the noise is not known');
   await view(page, 'add');
   await page.click('#fit');
   await chosen(page, 'with_bed-fitted.xml');
@@ -367,11 +386,48 @@ async function robot(page) {
   assert.deepEqual(await files(page, 'export-result'), [['urdf-arm/robot.urdf', 'robot.urdf']]);
   assert.ok(readFileSync(join(folder, 'urdf-arm/robot.urdf'), 'utf8').includes('q6'));
   await jointsOfOtherNames(page);
+  await unknownTool(page);
   await severalEnds(
     page,
     (ends) =>
       `<robot name="arm"><link name="l0"/>${links}${axes.map((one, k) => joint(k + 1, `l${k}`, `l${k + 1}`, one)).join('')}${ends}</robot>`,
   );
+}
+
+const turned = (axis, angle, [x, y, z]) => {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return axis === 'z' ? [c * x - s * y, s * x + c * y, z] : [c * x + s * z, y, c * z - s * x];
+};
+
+/** Poses of the arm of this journey, whose joints turn about z y y z y z, with a reflector that no file names. */
+const reflectorPoses = () =>
+  `${['q1', 'q2', 'q3', 'q4', 'q5', 'q6'].map((one) => `${one}[deg],`).join('')}x[mm],y[mm],z[mm],u[um]\n${Array.from(
+    { length: 40 },
+    (_, i) => {
+      const angles = Array.from({ length: 6 }, (__, k) => ((i * (37 + 11 * k) + k * 23) % 150) - 75);
+      const point = [...'zyyzyz'].reduceRight(
+        (at, axis, k) => turned(axis, (angles[k] * Math.PI) / 180, at).map((one, j) => one + (j === 2 ? 400 : 0)),
+        [30, -20, 118],
+      );
+      return [...angles, ...point.map((one, j) => (one + 0.01 * Math.sin(7 * i + 3 * j)).toFixed(4)), 10].join(',');
+    },
+  ).join('\n')}\n`;
+
+/** A fit with an unknown tool says so on the page, and a button fits the tool point too. */
+async function unknownTool(page) {
+  await view(page, 'project');
+  await page.drop([{ name: 'reflector.csv', text: reflectorPoses() }]);
+  await measured(page, 'reflector.csv');
+  await page.choose('#machine', 'arm.xml');
+  await page.until("document.body.dataset.subject === 'yes'", 'the rows');
+  await view(page, 'add');
+  await page.click('#fit');
+  await words(page, '#fit-notes', 'The tool point of the machine file is probably not that of the measurement');
+  assert.ok(!/--free|vernier new/.test(await text(page, '#fit-notes')), await text(page, '#fit-notes'));
+  await picture(page, 'robot_tool', '#fit');
+  await page.click('#fit-tool');
+  await page.until("document.getElementById('command').textContent.includes('--free TPX,TPY,TPZ')", 'the fit of the tool point');
+  await page.until("document.getElementById('fit-notes').textContent === ''", 'the note to go');
 }
 
 /** An arm with a tool and a camera: the page asks which of them is measured. */

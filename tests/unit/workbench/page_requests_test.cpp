@@ -59,10 +59,11 @@ struct Scripts {
       text[one.path().filename()] = read_file(one.path());
   }
 
-  /// What a name stands for: its first definition in the script, else in any script; empty: none.
-  std::string definition(const std::string& file, const std::string& name) const {
+  /// What a name stands for: its first definition in the script; of a function in any script. Empty: none.
+  std::string definition(const std::string& file, const std::string& name, bool function) const {
     std::vector<const std::string*> order = {&text.at(file)};
-    for (const auto& [other, words] : text) order.push_back(&words);
+    for (const auto& [other, words] : text)
+      if (function) order.push_back(&words);
     for (const std::string* const words : order)
       if (const auto at = words->find("const " + name + " = "); at != std::string::npos) {
         std::string found = words->substr(at, words->find(";\n", at) - at);
@@ -82,7 +83,7 @@ struct Scripts {
       }
       std::string spread = member.substr(3);
       const std::string name = spread.substr(0, spread.find_first_not_of(kIdentifier));
-      if (name == spread || name + "()" == spread) spread = definition(file, name);
+      if (name == spread || name + "()" == spread) spread = definition(file, name, name != spread);
       for (std::size_t at = spread.find('{'); at != std::string::npos; at = spread.find('{', at)) {
         const std::size_t end = end_of(spread, at);
         found.merge(keys(file, spread.substr(at + 1, end - at - 2)));

@@ -242,7 +242,8 @@ void run_fit(const FitArguments& arguments) {
       missing || !result.absurd.empty() ? unknown_tool(machine, m, options, result) : std::string();
   if (!result.absurd.empty())
     throw text::LimitNotMet(result.absurd + "; nothing is written" + (tool.empty() ? "" : ". ") + tool);
-  const nlohmann::ordered_json json = results::fit_json(result, m);
+  nlohmann::ordered_json json = results::fit_json(result, m);
+  if (!tool.empty()) json["notes"].push_back(tool);
   if (!arguments.output.empty())
     text::write_file(
         arguments.output,

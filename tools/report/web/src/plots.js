@@ -118,6 +118,7 @@ export function ladderOptions(steps, noise = null) {
       series[0].markLine = {
         silent: true,
         symbol: 'none',
+        z: 1, // behind the bars and their figures
         data: [{ xAxis: noise }],
         lineStyle: { color: c.trend, type: 'dashed', width: 1.5 },
         label: { formatter: `noise ${number(noise, 3)} ${unit}`, color: c.ink, position: 'start', distance: 2 },

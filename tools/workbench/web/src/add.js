@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { choice, el, table, tiles } from '../../../report/web/src/dom.js';
-import { number } from '../../../report/web/src/data.js';
+import { number, printed } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, getJson, postBlob, postJson, refresh, run } from './api.js';
 import { fallingFigure } from './charts.js';
-import { button, gate, guarded, needsSubject, panel, showError } from './parts.js';
+import { button, gate, guarded, needsSubject, panel, programWords, showError } from './parts.js';
 import { moreOptions } from './options.js';
 import { parameterPanel } from './parameters.js';
 import { redrawAll } from './plot.js';
@@ -30,7 +30,21 @@ async function fitInto(machine, label, options = {}) {
   const { result } = await run({ command: 'fit', ...measured(), machine, ...options, output });
   note(label, output, result);
   await choose(output, store.measurements);
+  notesOfFit(machine, label, options, result.notes ?? []);
   return result;
+}
+
+/** What the fit says beside its figures; a tool point that is not known is fitted with a button. */
+function notesOfFit(machine, label, options, notes) {
+  const box = document.getElementById('fit-notes');
+  box.replaceChildren(...notes.map((one) => el('p', { class: 'note', role: 'status' }, printed(programWords(one)))));
+  const free = notes.map((one) => one.match(/fit it: --free ([\w,]+)/)).find(Boolean);
+  if (!free) return;
+  const more = { ...options, free: [...(options.free ?? []), free[1]] };
+  const fit = button('Fit the tool point too', () => guarded(box, () => fitInto(machine, `${label}, with its tool point`, more)), {
+    id: 'fit-tool',
+  });
+  box.append(fit);
 }
 
 /** Adds an effect to the machine that is chosen and fits it: before and after on the same scale. */
@@ -276,6 +290,7 @@ export function addView(root) {
   );
   root.append(
     error,
+    el('div', { id: 'fit-notes' }),
     panel(null, el('div', { class: 'controls' }, fit, improve, effect, add, list), options.element, catalogue),
     stepsPanel(),
     parameterPanel(),

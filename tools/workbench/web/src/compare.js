@@ -3,7 +3,7 @@ import { choice, el, tiles } from '../../../report/web/src/dom.js';
 import { number, printed } from '../../../report/web/src/data.js';
 import { getJson, run } from './api.js';
 import { handoverPanel } from './handover.js';
-import { button, gate, guarded, nothingYet, panel } from './parts.js';
+import { button, gate, guarded, nothingYet, panel, programWords } from './parts.js';
 import { redrawAll } from './plot.js';
 import { polarPlot } from './polar.js';
 import { along, chosenLines, compared, lineWords, loadRows } from './rows.js';
@@ -36,7 +36,7 @@ function figures(result) {
 }
 
 /** What the command added or assumed: set-ups, a noise that no file states. */
-const notes = (result) => (result.notes ?? []).map((one) => el('p', { class: 'note' }, printed(one)));
+const notes = (result) => (result.notes ?? []).map((one) => el('p', { class: 'note' }, printed(programWords(one))));
 
 function findings(result) {
   const list = (result.findings ?? [])

@@ -7,7 +7,7 @@ import { addEffect } from './add.js';
 import { ladderFigure } from './charts.js';
 import { moreOptions } from './options.js';
 import { showExplanation } from './overlay.js';
-import { button, guarded, needsSubject, nothingYet, panel, showError } from './parts.js';
+import { button, guarded, needsSubject, nothingYet, panel, programWords, showError } from './parts.js';
 import { redrawAll } from './plot.js';
 import { along, measured, valuesOf } from './rows.js';
 import { scatter } from './scatter.js';
@@ -227,7 +227,7 @@ export function diagnoseView(root) {
       { id: 'evidence' },
       el('p', { class: 'note' }, 'Point at a candidate, or go to it with the Tab key: what it rests on, and what it would explain.'),
     );
-    const words = el('div', {}, verdict(result));
+    const words = el('div', {}, verdict({ ...result, explanation: programWords(result.explanation) }));
     words.dataset.verdict = result.verdict;
     words.id = 'verdict';
     const plots = [overlayPlot(), vectorPlot(300, 'Residual vectors and what the candidate would explain')];

@@ -8,6 +8,7 @@ const um = (value) => `${number(value, 3)} µm`;
 function askWhatIsMissing() {
   if (!store.compare) return 'Ask what is missing.';
   const { rms_um, noise_um } = store.compare;
+  if (!Number.isFinite(noise_um)) return `The residual of the model is ${um(rms_um)}, the noise is not known: ask what is missing.`;
   return rms_um > noise_um
     ? `The residual of the model is ${um(rms_um)}, the noise ${um(noise_um)}: ask what is missing.`
     : `The residual of the model (${um(rms_um)}) is not larger than the noise (${um(noise_um)}): ask whether anything is missing.`;

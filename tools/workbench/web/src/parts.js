@@ -34,15 +34,29 @@ export const kNoSubject = 'Choose a machine and measurements at the top first';
 /** Attributes of a button that a machine and rows have to be chosen for. */
 export const needsSubject = { 'data-needs-subject': '', 'data-why': kNoSubject, title: kNoSubject, disabled: '' };
 
+/** What a fit says of a tool point that is not known. */
+const kTool = /State the tool \(vernier new --tool\), or fit it: --free ([\w,]+)/;
+const toolWords = (whole, names) =>
+  `State the tool in the field "tool" of a new machine file, or fit it: write ${names} into the field "free" of the options of fit`;
+
+/** Notes and explanations of a result in the words of the page. */
+export const programWords = (words) =>
+  words
+    ?.replace(kTool, toolWords)
+    .replace(
+      / \(import table --set "([^"]+)"\)/g,
+      ' under Project: press "read differently" beside the file, and write $1 into the field "set"',
+    );
+
 /** A message of a command in the words of the page: an option that has a field is called by the field. `typed`: the command. */
 export function pageWords(message, typed) {
   const command = store.commands
     .filter((one) => `${typed ?? ''} `.startsWith(`vernier ${one.name} `))
     .sort((a, b) => b.name.length - a.name.length)[0];
   // A whole command is for the terminal.
-  if (!command || /\bvernier [a-z]/.test(message)) return message;
+  if (!command || /\bvernier [a-z]/.test(message.replace(kTool, ''))) return message.replace(kTool, toolWords);
   const has = (name) => command.options.some((one) => one.name === name);
-  const accepted = message.replace(/;((?: --accept [\w-]+)+) overrides\s*$/, (whole, list) =>
+  const accepted = message.replace(kTool, toolWords).replace(/;((?: --accept [\w-]+)+) overrides\s*$/, (whole, list) =>
     has('accept')
       ? `. If you accept this, mark ${list
           .trim()
@@ -54,12 +68,21 @@ export function pageWords(message, typed) {
   );
   const field = (name) => `the field "${fieldName(name)}"`;
   // The option is the word in doubt, or has a value: --offset=X,Y is a list, whose field has "; " between two values.
-  return accepted
-    .replace(/"--([a-z][\w-]*)": /g, (whole, name) => (has(name) ? `${field(name)}: ` : whole))
-    .replace(/--([a-z][\w-]*)=([^\s,;()]+(?:,[^\s,;()]+)*)/g, (whole, name, value) =>
-      has(name) ? `"${value.replaceAll(',', '; ')}" in ${field(name)}` : whole,
-    )
-    .replace(/--([a-z][\w-]*)/g, (whole, name) => (has(name) ? field(name) : whole));
+  return (
+    accepted
+      .replace(/"--([a-z][\w-]*)": /g, (whole, name) => (has(name) ? `${field(name)}: ` : whole))
+      .replace(/--([a-z][\w-]*)=([^\s,;()]+(?:,[^\s,;()]+)*)/g, (whole, name, value) =>
+        has(name) ? `"${value.replaceAll(',', '; ')}" in ${field(name)}` : whole,
+      )
+      // A quoted value, or one of the words of the option.
+      .replace(/--([a-z][\w-]*) ("[^"]+"|[a-z][\w-]*)/g, (whole, name, value) => {
+        const { words } = command.options.find((one) => one.name === name) ?? {};
+        return has(name) && (value.startsWith('"') || words?.includes(value))
+          ? `${value.startsWith('"') ? value : `"${value}"`} in ${field(name)}`
+          : whole;
+      })
+      .replace(/--([a-z][\w-]*)/g, (whole, name) => (has(name) ? field(name) : whole))
+  );
 }
 
 /** Why rows cannot be read, in the words of the page: a command for the terminal becomes the panel of Project that runs it. */

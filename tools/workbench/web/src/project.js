@@ -74,15 +74,15 @@ async function machineOfRobot(name, ask) {
     { ends } = await getJson('/api/robot', { name }),
     // The usual name of the tool's link (ROS-Industrial) first.
     order = [...ends.filter((one) => one === 'tool0'), ...ends.filter((one) => one !== 'tool0')];
-  let tip = {};
+  let link = null;
   if (order.length > 1) {
-    const link = await question(ask, `${name}: the arm has several end links. Which of them carries the tool that is measured?`, [
+    link = await question(ask, `${name}: the arm has several end links. Which of them carries the tool that is measured?`, [
       ...order.map((one) => [one, one]),
       ['Not now', ''],
     ]);
     if (!link) return null;
-    tip = { tip: link };
   }
+  const tip = link ? { tip: link } : {};
   const output = freeName(stem, '.xml');
   await run({ command: 'new', type: 'robot', urdf: name, ...tip, output, measurements: freeName(`${stem}_survey`, '.csv') });
   return choose(output, store.measurements);
@@ -198,6 +198,8 @@ function fileRow(file, kind, act) {
     kind === 'measurement' && store.measurements.length && !store.measurements.includes(name)
       ? button('use too', () => choose(store.machine, [...store.measurements, name]), { class: 'quiet' })
       : null;
+  const differently =
+    kind === 'measurement' ? button('read differently', () => act.differently(name), { class: 'quiet differently' }) : null;
   const chosen = name === store.machine || store.measurements.includes(name);
   // A report is opened; anything else is saved under its name.
   const link = kind === 'report' ? { target: '_blank', rel: 'noopener' } : { download: name.replace(/.*\//, '') };
@@ -213,6 +215,8 @@ function fileRow(file, kind, act) {
       label ? button(label, () => act.use(name, kind), { class: 'quiet use' }) : null,
       ' ',
       also,
+      ' ',
+      differently,
       ' ',
       button('delete', () => act.remove(name), { class: 'quiet delete', 'aria-label': `delete ${name}` }),
     ),
@@ -301,7 +305,15 @@ export function projectView(root) {
   });
   const files = el('tbody', { id: 'files' });
   const asked = el('div', { id: 'file-error' });
+  const byTable = async (name, done) => {
+    await importSheet(box, name, done, true);
+    box.scrollIntoView({ block: 'nearest' });
+  };
   const act = {
+    differently: (name) =>
+      byTable(name, (outputs) =>
+        choose(store.machine, [...new Set(store.measurements.flatMap((one) => (one === name ? outputs : [one])).concat(outputs))]),
+      ),
     use: async (name, kind) => {
       error.replaceChildren();
       await use(name, kind, { box, repair: repair.values(), ask: error }).catch((why) => showError(error, why));
@@ -322,10 +334,7 @@ export function projectView(root) {
   root.append(
     panel('Take in', zone, error, notes),
     box,
-    stoodPanel(chooseAnew, (name, done) => {
-      box.scrollIntoView({ block: 'nearest' });
-      return importSheet(box, name, done, true);
-    }),
+    stoodPanel(chooseAnew, byTable),
     beginPanel(chooseAnew),
     panel(
       'Files',

@@ -145,7 +145,7 @@ export async function importSheet(box, name, done, asks = false) {
       box.replaceChildren(
         panel(
           null,
-          el('p', { id: 'imported' }, `${name}: ${preview.how}. Read into `, el('strong', {}, output), '.'),
+          el('p', { id: 'imported' }, `${name}: ${onPage(preview.how)}. Read into `, el('strong', {}, output), '.'),
           button('Read it differently', () => draw(preview), { class: 'quiet', id: 'read-differently' }),
           others(preview),
         ),
@@ -226,7 +226,7 @@ export async function importSheet(box, name, done, asks = false) {
     box.replaceChildren(
       panel(
         `What is in ${name}?`,
-        el('p', { id: 'how-read' }, now.how),
+        el('p', { id: 'how-read' }, onPage(now.how)),
         axes ? el('p', { class: 'note', id: 'axes-of-machine' }, `Axes of the machine: ${axes}.`) : null,
         now.message && kind === 'table' ? el('p', { class: 'error', role: 'alert', id: 'sheet-message' }, onPage(now.message)) : null,
         now.message ? el('div', { class: 'controls', id: 'sheet-confirmations' }, confirmations(now)) : null,
