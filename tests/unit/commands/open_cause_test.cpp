@@ -75,7 +75,8 @@ TEST(Improve, AddsNoHeatForALoadThatChangesInStepsAndIsNotRecorded) {
   const Improved result = improve("load_not_recorded");
   EXPECT_THAT(result.effects(), testing::IsEmpty());
   EXPECT_EQ(result.json["verdict"], "unexplained");
-  EXPECT_THAT(result.said, HasSubstr("The readings step at 4 rows or more, and u does not state these steps"));
+  EXPECT_THAT(result.said,
+              HasSubstr("The readings step at 4 rows or more, and u does not state these steps"));
 }
 
 /// Creep, which the catalogue marks as rare, is the same function of these positions as lead error and

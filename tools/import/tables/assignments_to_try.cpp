@@ -121,7 +121,7 @@ std::string named_triple(const sheet::SheetTable& table, const std::vector<Sheet
 /// robot by its joints. Empty for other tables.
 std::string point_of_robot(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
                            const Guess& guess) {
-  constexpr std::size_t kFewestJoints = 3;  // fewer columns may be temperatures or loads
+  constexpr std::size_t kFewestJoints = 3;       // fewer columns may be temperatures or loads
   constexpr std::size_t kFewestCoordinates = 2;  // one coordinate is the position of an axis, beside its runs
   std::string options;
   std::size_t joints = 0, coordinates = 0;

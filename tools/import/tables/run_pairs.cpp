@@ -27,7 +27,7 @@ constexpr DirectionPair kDirectionPairs[] = {
     {"f", "r", kForth, kBack},                             // forward, reverse
     {"a", "r", kForth, kBack},                             // aller, retour; andata, ritorno
     {"i", "v", kForth, kBack},                             // ida, vuelta
-    {"u", "d", kUp, kDown},    {"up", "dn", kUp, kDown}};
+    {"up", "dn", kUp, kDown}};
 
 /// A heading of one number and of words, in any order, with blanks, points or low lines between.
 struct Parts {
