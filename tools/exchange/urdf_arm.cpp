@@ -20,6 +20,7 @@
 #include "tools/model/fit_record.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
+#include "tools/text/xml_text.h"
 
 namespace vernier::exchange {
 namespace {

@@ -10,6 +10,7 @@
 #include "tools/format/columns.h"
 #include "tools/kinematics/correction.h"
 #include "tools/maths/decompositions.h"
+#include "tools/maths/factors.h"
 #include "tools/model/chain/chain.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/parameters.h"
