@@ -69,6 +69,15 @@ TEST(Improve, UnknownToolOfARobotIsAddedBeforeTheSearchForTheRest) {
   EXPECT_THAT(result.said, HasSubstr("joint joint_a3: compliance"));
 }
 
+/// The scale steps at the begin of a run, as after a collision. A slow response to heat that begins again in
+/// each run explains these rows as well, and was added.
+TEST(Improve, AddsNoHeatThatAChangeBetweenTheRunsExplainsAsWell) {
+  const Improved result = improve("collision_between_runs");
+  EXPECT_THAT(result.effects(), testing::IsEmpty());
+  EXPECT_EQ(result.json["verdict"], "ambiguous");
+  EXPECT_THAT(result.said, HasSubstr("A change of the machine or of its set-up between the runs"));
+}
+
 /// The readings step at each quarter of a run. A slow response to heat follows a part of the steps, and was
 /// added: the error at new poses became 1.1 times as large.
 TEST(Improve, AddsNoHeatForALoadThatChangesInStepsAndIsNotRecorded) {
