@@ -64,9 +64,10 @@ std::string scale_of_square(const MachinePlan& plan, const PlannedAxis& axis) {
   constexpr std::size_t kHorizontal = 2;  // X and Y
   return plan.square_only && !axis.rotary() && axis.along() < kHorizontal ? "scale" + axis.name : "";
 }
-std::string length_static(const std::string& name, double value, const std::string& note) {
-  return fmt::format("      <{0} value=\"{1}\" unit=\"mm\" Hide=\"true\" note=\"{2}\"/>\n", name,
-                     number(value), note);
+/// `scale`: how large the value may plausibly be, mm; 0: not stated.
+std::string length_static(const std::string& name, double value, const std::string& note, double scale = 0) {
+  return fmt::format("      <{} value=\"{}\" unit=\"mm\"{} Hide=\"true\" note=\"{}\"/>\n", name,
+                     number(value), scale > 0 ? fmt::format(" scale=\"{:g}\"", scale) : "", note);
 }
 
 /// An angle of a slide's travel about one axis of the machine: E + turn + 0 + the slide's name.
@@ -166,11 +167,9 @@ std::string tool_statics(const MachinePlan& plan) {
       "      <!-- Position of the tool point in the frame of the last axis that carries the tool. Hide: a "
       "fit does not change it. -->\n";
   for (std::size_t k = 0; k < 3; ++k)
-    text += plan.arm.empty() ? length_static(fmt::format("TP{}", kLengths[k]), plan.tool[k], "tool point")
-                             : fmt::format(
-                                   "      <TP{} value=\"{}\" unit=\"mm\" scale=\"{:g}\" Hide=\"true\" "
-                                   "note=\"tool point on the flange\"/>\n",
-                                   kLengths[k], number(plan.tool[k]), kTool_mm);
+    text += length_static(fmt::format("TP{}", kLengths[k]), plan.tool[k],
+                          plan.arm.empty() ? "tool point" : "tool point on the flange",
+                          plan.arm.empty() ? 0 : kTool_mm);
   return text;
 }
 

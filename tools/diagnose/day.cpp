@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/diagnose/day.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "tools/diagnose/doubts/shape.h"
@@ -34,15 +33,11 @@ bool daily_drift_explains(const Evidence& evidence, const Pool& pool, std::size_
   const Evidence::Range time = evidence.time_range();
   if (pool.candidate(item).choice.inputs.empty() || time.high <= time.low) return false;
   const Eigen::MatrixXd beside = pool.columns(others);
-  const double price = std::log(static_cast<double>(evidence.residual().size()));
-  const auto lowers = [&](const Eigen::MatrixXd& columns, std::size_t scanned) {
-    const Gain gain = gain_of(evidence, columns, beside);
-    return gain.chi_square - price * (gain.rank + static_cast<double>(scanned));
-  };
   const std::vector<double>& scanned = pool[item].scored.scanned;
-  const double named = lowers(evidence.columns(pool.candidate(item), scanned), scanned.size());
+  const double named =
+      bic_decrease(evidence, evidence.columns(pool.candidate(item), scanned), beside, scanned.size());
   for (const Eigen::MatrixXd& shift : daily_shifts(evidence))
-    if (lowers(shift, 0) > named - distance) return true;
+    if (bic_decrease(evidence, shift, beside, 0) > named - distance) return true;
   return false;
 }
 

@@ -265,10 +265,9 @@ class Decision {
       return {};
     return fmt::format(
         "The readings step at {} rows or more, and u does not state these steps. An error of the machine "
-        "that "
-        "depends on no recorded quantity, such as a load, can look like this. No cause is named; {} is only "
-        "a "
-        "candidate.{}",
+        "that depends on no recorded quantity, such as a load, can look like this. No cause is named; {} is "
+        "only "
+        "a candidate.{}",
         rows.size(), pool_.candidate(*doubtful).spoken,
         check_rows_in_words(answer_.ladder, accepted_.size()));
   }
@@ -371,9 +370,8 @@ class Decision {
                                                            found_.options.thresholds.acceptance.distance);
     const bool or_run = !or_set_up && !or_day && change_between_runs(0);
     if (others == 0 && !or_set_up && !or_day && !or_run) return {};
-    if (or_set_up) answer_.instrument = "set-up";
+    if (or_set_up || or_run) answer_.instrument = "set-up";
     if (or_day) answer_.instrument = "drift";
-    if (or_run) answer_.instrument = "set-up";
     return fmt::format(
                "{} causes explain these data equally well; the most likely cause is {}.{}{}",
                1 + others + (or_set_up || or_day || or_run ? 1 : 0),

@@ -33,12 +33,12 @@ void export_urdf(const ExchangeArguments& arguments) {
       file.positions, file.measured ? "measured" : "declared", file.rms_um, file.worst_um, file.worst_urad,
       file.rms_nominal_um);
   Json tip;
-  if (!file.original)
+  if (!file.original) {
     fmt::print(
         human_stream(arguments.json),
         "base_link is the base of the rows of the machine file; the root link of the URDF from which the "
         "machine was made can have another place and orientation (--original keeps it)\n");
-  if (file.original) {
+  } else {
     const std::array<double, 3>& tool = file.original->tool_mm;
     fmt::print(
         human_stream(arguments.json),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/diagnose/doubts/between_runs.h"
 
-#include <cmath>
 #include <map>
 
 #include "tools/diagnose/doubts/shape.h"
@@ -65,12 +64,8 @@ bool change_between_runs_explains(const Evidence& evidence, const Pool& pool,
     scanned += pool[one].scored.scanned.size();
   }
   const Eigen::MatrixXd beside = pool.columns(others);
-  const double price = std::log(static_cast<double>(evidence.residual().size()));
-  const auto lowers = [&](const Eigen::MatrixXd& columns, std::size_t unknowns) {
-    const Gain gain = gain_of(evidence, columns, beside);
-    return gain.chi_square - price * (gain.rank + static_cast<double>(unknowns));
-  };
-  return lowers(of_runs, 0) > lowers(named, scanned) - distance;
+  return bic_decrease(evidence, of_runs, beside, 0) >
+         bic_decrease(evidence, named, beside, scanned) - distance;
 }
 
 }  // namespace vernier::diagnose

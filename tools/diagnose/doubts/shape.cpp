@@ -383,6 +383,13 @@ Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::
   return {explained / std::max(variance, 1e-300), own.rank()};
 }
 
+double bic_decrease(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside,
+                    std::size_t scanned) {
+  const Gain gain = gain_of(evidence, raw, beside);
+  const double price = std::log(static_cast<double>(evidence.residual().size()));
+  return gain.chi_square - price * (gain.rank + static_cast<double>(scanned));
+}
+
 AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const effects::DofPlace& place,
                               const Eigen::MatrixXd& beside) {
   const ShapeThresholds& limits = evidence.thresholds().shape;

@@ -30,6 +30,11 @@ struct Gain {
 /// columns `beside` are fitted too.
 Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside);
 
+/// Returns the decrease of the BIC by the whitened columns `raw`, beside `beside` as in gain_of(). `scanned`:
+/// number of unknowns that were searched for the columns.
+double bic_decrease(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside,
+                    std::size_t scanned);
+
 /// Estimates the error as a function of one axis. function_of_axis uses the readings, not the form that the
 /// search selected. The test compares half-waves down to an eighth of the measured range with half-waves of
 /// half this length. With fewer than 17 positions the half-waves are longer, with two positions for each
