@@ -544,6 +544,7 @@ void withdraw_if_the_fit_contradicts(Diagnosis& answer) {
   } else {
     answer.verdict = Verdict::kUnexplained;
     answer.explanation = "No cause is named: " + why + ". " + answer.explanation;
+    for (LadderStep& step : answer.ladder) step.certain = false;
   }
 }
 

@@ -109,6 +109,13 @@ std::string aliases_in_words(const effects::Candidate& candidate, double period,
                             axis.name);
 }
 
+std::string difference_in_words(const std::vector<std::string>& alone) {
+  return fmt::format(
+      " Only the difference of the axes is measured here: each of these alone gives the same readings: {}. A "
+      "straight line along each axis at two feeds separates them.",
+      fmt::join(alone, "; "));
+}
+
 std::string pieces_in_words(const std::vector<std::string>& names) {
   return fmt::format(
       "{} effects together reduce the residual to the noise, but they are probably parts of one function of "

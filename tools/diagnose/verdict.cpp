@@ -108,9 +108,7 @@ class Decision {
   /// No instrument drifts from row to row: an error that does depends on the previous motion, or on a
   /// quantity that changes as fast.
   std::string error_from_row_to_row() {
-    if (!accepted_.empty() || kind_of(answer_.noise) != "drift" ||
-        !fit::has_uncertainty(found_.measurement) || !drift_is_from_row_to_row())
-      return {};
+    if (!accepted_.empty() || kind_of(answer_.noise) != "drift" || !drift_is_from_row_to_row()) return {};
     const std::string drift = drift_of_instrument();
     if (drift.empty()) return {};
     return with_refused(
@@ -393,8 +391,21 @@ class Decision {
                           other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size());
   }
 
+  /// An effect of two axes, and that of each of them alone, can have the same columns.
+  std::string only_the_difference() const {
+    for (std::size_t i = 0; i < accepted_.size(); ++i) {
+      if (!pool_.candidate(accepted_[i]).choice.axis2) continue;
+      std::vector<std::string> alone;
+      for (const std::size_t same : found_.alternatives[i].same)
+        if (const effects::Choice& other = pool_.candidate(same).choice; other.axis && !other.axis2)
+          alone.push_back(pool_.candidate(same).spoken);
+      if (alone.size() > 1) return difference_in_words(alone);
+    }
+    return {};
+  }
+
   std::string one_cause() {
-    std::string text = said_of_cause();
+    std::string text = said_of_cause() + only_the_difference();
     if (!is_noise_) text += " The remaining residual is not noise." + where_left(answer_.left);
     return text + rest();
   }
@@ -494,9 +505,11 @@ class Decision {
   }
 
   bool drift_is_from_row_to_row() const {
+    constexpr double kRowsWithoutU = 2;  // without u a longer drift can be the noise of the instrument itself
+    const double rows = fit::has_uncertainty(found_.measurement) ? limits_.rows_of_a_drift : kRowsWithoutU;
     const fit::NoiseLayout layout = fit::noise_layout(rows_, fit::fitted_readings(fit::fit_weights(rows_)),
                                                       found_.options.thresholds.layout);
-    return answer_.noise.time_constant < limits_.rows_of_a_drift * layout.step;
+    return answer_.noise.time_constant < rows * layout.step;
   }
 
   /// Can a term repeat a part of a drift? True if the term depends on an input, the time or the run, at any

@@ -284,6 +284,42 @@ TEST(Causes, HaveNoFormThatTheFitBringsToTheAcceptedOne) {
   EXPECT_EQ(effects_of(answer), std::vector<std::string>{"backlash"});
 }
 
+/// A ball bar of 150 mm on circles at two feeds, both senses; `lag_s` of X and Y: how late each axis is.
+Diagnosis circles_with_lag(double lag_x_s, double lag_y_s) {
+  static const char* const table = R"xml(<machine name="m"><variables>
+    <static><sX value="0"/><sY value="0"/></static>
+    <machineaxes><X min="-200" max="200"/><Y min="-200" max="200"/></machineaxes></variables>
+    <transforms branch="tool"><sixdof n="1" Y="Y*(1+sY)"/><sixdof n="2" X="X*(1+sX)"/></transforms></machine>)xml";
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::string text = "X[mm],Y[mm],dirX,dirY,vX[mm/s],vY[mm/s],length[mm],cx[mm],cy[mm],cz[mm],u[um],run\n";
+  for (int run = 0; run < 4; ++run) {
+    const double feed = run < 2 ? 20 : 50, sense = run % 2 == 0 ? 1 : -1;
+    for (int row = 0; row < 90; ++row) {
+      const double angle = sense * 2 * std::numbers::pi * (row + 0.5) / 90;
+      const double x = 150 * std::cos(angle), y = 150 * std::sin(angle);
+      const double vx = -feed * sense * std::sin(angle), vy = feed * sense * std::cos(angle);
+      const double length = std::hypot(x - lag_x_s * vx, y - lag_y_s * vy) + noise(random);
+      text += fmt::format("{},{},{},{},{},{},{:.6f},0,0,0,1,r{}\n", x, y, vx > 0 ? 1 : -1, vy > 0 ? 1 : -1,
+                          vx, vy, length, run);
+    }
+  }
+  static const DiagnoseOptions options;
+  const Machine machine = parse_machine(table, "m.xml");
+  return diagnose::diagnose(table, machine, parse_measurement(text, "m.csv", machine), options);
+}
+
+// A lag of X and a lead of Y have one column on a circle: none of the two is named alone.
+TEST(Causes, NameTheDifferenceOfTwoAxesOnACircle) {
+  for (const bool x_is_late : {true, false}) {
+    const Diagnosis answer = x_is_late ? circles_with_lag(1.3e-3, 1e-3) : circles_with_lag(1e-3, 1.3e-3);
+    ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
+    ASSERT_EQ(effects_of(answer), std::vector<std::string>{"servo-mismatch"});
+    EXPECT_NE(answer.explanation.find("X carriage: lag; Y carriage: lag"), std::string::npos)
+        << answer.explanation;
+  }
+}
+
 TEST_F(Decision, ReplacesACauseOnlyByOneThatPassesTheTests) {
   ASSERT_EQ(finder_.chosen().size(), 1U);
   const std::size_t cause = finder_.chosen().front();
