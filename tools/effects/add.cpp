@@ -100,10 +100,13 @@ class Adder {
     for (const CandidateUnknown& unknown : candidate_.unknowns)
       // A time constant or a period has no meaning at 0, so its nominal is its start value. The
       // term is still 0, because its coefficient is 0.
-      lines += fmt::format("      <{} value=\"{}\" nominal=\"{}\" unit=\"{}\" note=\"{}\"/>\n", unknown.name,
-                           text::number_text(unknown.start),
-                           unknown.kind == UnknownKind::kLinear ? "0" : text::number_text(unknown.start),
-                           text::escape_attribute(unknown.unit), text::escape_attribute(candidate_.label));
+      lines +=
+          fmt::format("      <{} value=\"{}\" nominal=\"{}\" unit=\"{}\"{} note=\"{}\"/>\n", unknown.name,
+                      text::number_text(unknown.start),
+                      unknown.kind == UnknownKind::kLinear ? "0" : text::number_text(unknown.start),
+                      text::escape_attribute(unknown.unit),
+                      unknown.scale ? fmt::format(" scale=\"{}\"", text::number_text(*unknown.scale)) : "",
+                      text::escape_attribute(candidate_.label));
     for (const fit::DomainStatic& item : fit::open_domain(domain_name_, domain_))
       lines +=
           fmt::format("      <{} value=\"{}\" Hide=\"true\" unit=\"{}\" note=\"where it is valid: {}\"/>\n",

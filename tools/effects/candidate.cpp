@@ -372,11 +372,14 @@ class Maker {
   CandidateUnknown unknown(const std::string& rule_name, const std::string& name, const DofPlace& at) const {
     const UnknownRule* rule = choice_.effect->find_unknown(rule_name);
     if (rule == nullptr) rule = choice_.effect->find_unknown(is_numbered(rule_name) ? "k" : "h");
-    CandidateUnknown item{name, {}, rule_name, UnknownKind::kLinear, 0, 0, {}};
+    CandidateUnknown item;
+    item.name = name;
+    item.rule = rule_name;
     if (rule != nullptr) {
       item.kind = rule->kind;
       item.limit = rule->limit;
       item.plausible = rule->plausible;
+      item.scale = rule->scale;
       item.unit = unit(rule->unit, at);
     }
     const auto start = choice_.start.find(rule_name);

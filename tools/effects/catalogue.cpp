@@ -191,13 +191,18 @@ class CatalogueReader {
       fail(rule.name, "an unknown cannot have this name, because the name is reserved");
     if (effect.find_unknown(rule.name) != nullptr) fail(rule.name, "the effect declares this unknown twice");
     rule.unit = next_word(rest);
-    const std::string kind = next_word(rest);
+    std::string kind = next_word(rest);
     const auto number = [&] {
       const std::string word = next_word(rest);
       const auto value = text::parse_number(word);
       if (!value) fail(word, "expected a number");
       return *value;
     };
+    if (kind == "scale") {
+      rule.scale = number();
+      if (!(*rule.scale > 0)) fail(rule.name, "a scale is a number above 0");
+      kind = next_word(rest);
+    }
     if (kind == "linear") {
       rule.kind = UnknownKind::kLinear;
       if (!rest.empty()) rule.limit = number();

@@ -53,6 +53,7 @@ struct PlausibleRange {
 struct UnknownRule {
   std::string name, unit;  // name and unit; the unit may contain {dof} {q} {T}
   UnknownKind kind = UnknownKind::kLinear;
+  std::optional<double> scale;  // plausible size in a fit (Static::scale), in the unit of the unknown
   double limit = 0;          // for kLinear: largest plausible size of the whole term, mm or deg; 0: no limit
   PlausibleRange plausible;  // for kLinear: plausible range of the unknown itself
   double low = 0, high = 0;  // for kGrid: lowest and highest value

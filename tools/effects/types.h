@@ -47,6 +47,7 @@ struct CandidateUnknown {
   std::string rule;  // name of the unknown in the catalogue: k, p, tau ...
   UnknownKind kind = UnknownKind::kLinear;
   double start = 0;
+  std::optional<double> scale;  // plausible size in a fit (Static::scale); no value: by the unit
   double limit = 0;  // for a linear unknown: largest plausible size of the term, mm or deg; 0: no limit
   PlausibleRange plausible;
 };

@@ -10,6 +10,7 @@
 #include <optional>
 #include <pugixml.hpp>
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -75,10 +76,9 @@ class Arm {
       arm.axes.push_back({back * joint.point, back.linear() * joint.direction});
       back = back * motion_of(joint, machine_.axes[joint.axis].rotary, -reference_[joint.axis]);
     }
-    constexpr std::array<const char*, 3> kToolPoint = {"TPX", "TPY", "TPZ"};  // of `vernier new`
-    for (std::size_t i = 0; i < kToolPoint.size(); ++i)
-      if (const auto at = machine_.find_static(kToolPoint[i])) arm.tool_mm[i] = machine_.statics[*at].value;
-    arm.last = back * at_reference_ * Eigen::Translation3d(-arm.tool_mm[0], -arm.tool_mm[1], -arm.tool_mm[2]);
+    const Vector3d tool = tool_point();
+    std::copy(tool.begin(), tool.end(), arm.tool_mm.begin());
+    arm.last = back * at_reference_ * Eigen::Translation3d(-tool);
     return arm;
   }
 
@@ -111,8 +111,44 @@ class Arm {
     return all;
   }
 
+  /// The tool point in the frame of the last row, mm: what the statics of its X, Y, Z add that only move this
+  /// point, in every pose alike. These are TPX, TPY, TPZ of `vernier new`, and an offset of the point that a
+  /// diagnosis added.
+  Vector3d tool_point() const {
+    constexpr double kSame_mm = 1e-9;
+    Vector3d sum = Vector3d::Zero();
+    if (machine_.tool.empty() || machine_.tool.back().kind != model::TransformKind::kSixDof) return sum;
+    std::set<std::size_t> named;
+    for (std::size_t dof = 0; dof < 3; ++dof)
+      model::walk(*machine_.tool.back().dof[dof], [&](const model::Expr& node) {
+        if (node.op == model::Op::kSymbol && node.symbol.kind == model::SymbolKind::kStatic)
+          named.insert(static_cast<std::size_t>(node.symbol.index));
+      });
+    constexpr std::size_t kSome = 9;  // poses
+    std::vector<Joints> some = random_poses(kSeed);
+    some.resize(kSome);
+    some.front() = reference_;
+    const std::vector<Isometry3d> with = poses(some);
+    for (const std::size_t one : named) {
+      model::Machine changed = machine_;
+      changed.statics[one].value = 0;
+      const std::vector<Isometry3d> without = poses_of(changed, some);
+      const Vector3d by = (without.front().inverse() * with.front()).translation();
+      bool alike = true;
+      for (std::size_t i = 0; i < kSome && alike; ++i)
+        alike = without[i].linear().isApprox(with[i].linear(), kSame_mm) &&
+                ((without[i].inverse() * with[i]).translation() - by).norm() < kSame_mm;
+      if (alike) sum += by;
+    }
+    return sum;
+  }
+
   std::vector<Isometry3d> poses(const std::vector<Joints>& joints) const {
-    const model::Poses found = model::forward(machine_, states(joints));
+    return poses_of(machine_, joints);
+  }
+
+  std::vector<Isometry3d> poses_of(const model::Machine& machine, const std::vector<Joints>& joints) const {
+    const model::Poses found = model::forward(machine, states(joints));
     std::vector<Isometry3d> list(joints.size(), Isometry3d::Identity());
     for (std::size_t i = 0; i < joints.size(); ++i) {
       list[i].linear() = found.rotation[i];

@@ -295,6 +295,29 @@ TEST(UrdfOriginal, KeepsEverythingButTheOriginsOfItsJoints) {
   EXPECT_NE(file.text.find("<!-- Calibrated origins of the joints"), std::string::npos);
 }
 
+// The offset of the point that a diagnosis added is a reflector, and no error of the arm.
+TEST(UrdfOriginal, HasAnAddedOffsetOfThePointOutsideItsTip) {
+  const std::string urdf = maker(kFlange);
+  std::string text = calibrated(urdf, "tool0");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("X=\"TPX\"", "X=\"TPX+offset_X\"");
+  replace("<static>", "<static><offset_X value=\"31\" unit=\"mm\"/>");
+  const exchange::UrdfOriginal original{urdf, "maker.urdf", "tool0"};
+  const Machine machine = parse_machine(text, "maker.xml");
+  const exchange::UrdfFile file =
+      exchange::urdf_arm(machine, make_states(1, machine), exchange::joint_names(machine, text), &original);
+  EXPECT_LT(worst_of(file, machine, exchange::joint_names(machine, text)), 1e-6);
+  const format::UrdfTree before(urdf, "maker.urdf"), after(file.original->text, "robot.urdf");
+  const std::vector<format::UrdfJoint> was = before.way_to("tool0"), is = after.way_to("tool0");
+  ASSERT_EQ(is.size(), was.size());
+  for (std::size_t i = 0; i < is.size(); ++i)
+    EXPECT_TRUE(is[i].origin.isApprox(was[i].origin, 1e-9)) << is[i].name;
+  EXPECT_NEAR(Vector3d(file.original->tool_mm.data()).norm(), std::hypot(12 + 31, 7, 80), 1e-6);
+}
+
 TEST(UrdfOriginal, HasOneMoreLinkWhereTheTipTurnsWithTheLastJoint) {
   const std::string urdf = maker(""), text = calibrated(urdf, "wrist");
   const exchange::UrdfOriginal original{urdf, "maker.urdf", "wrist"};
