@@ -65,6 +65,18 @@ bool estimate_noise_again(const std::string& text, const model::Machine& machine
   return true;
 }
 
+diagnose::Diagnosis diagnose_and_estimate_noise(const std::string& text, const model::Machine& machine,
+                                                model::Measurement& rows, std::vector<fit::FileNoise>& noise,
+                                                const diagnose::DiagnoseOptions& options) {
+  constexpr int kMostRepeats = 2;
+  diagnose::Diagnosis diagnosis = diagnose::diagnose(text, machine, rows, options);
+  for (int count = 0; count < kMostRepeats && diagnosis.ladder.size() > 1 &&
+                      estimate_noise_again(diagnosis.machine_text, machine, rows, noise);
+       ++count)
+    diagnosis = diagnose::diagnose(text, machine, rows, options);
+  return diagnosis;
+}
+
 std::vector<std::string> noise_sentences(const std::vector<fit::FileNoise>& noise) {
   std::vector<std::string> list;
   for (const fit::FileNoise& one : noise) list.push_back(one.sentence() + ".");

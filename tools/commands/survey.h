@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/diagnose/diagnosis.h"
 #include "tools/fit/files/file_noise.h"
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
@@ -40,6 +41,13 @@ std::vector<fit::FileNoise> estimate_noise(Survey& survey);
 /// `machine`: the machine of `rows`. Returns true if `rows` and `noise` have other values now.
 bool estimate_noise_again(const std::string& text, const model::Machine& machine, model::Measurement& rows,
                           std::vector<fit::FileNoise>& noise);
+
+/// Diagnoses, and again if the found effects change the estimates of u: an estimate from the residual of the
+/// given model contains the errors that these effects explain. `rows` and `noise` have the last estimates
+/// then.
+diagnose::Diagnosis diagnose_and_estimate_noise(const std::string& text, const model::Machine& machine,
+                                                model::Measurement& rows, std::vector<fit::FileNoise>& noise,
+                                                const diagnose::DiagnoseOptions& options);
 
 /// Sentences about the estimates of u, for an explanation.
 std::vector<std::string> noise_sentences(const std::vector<fit::FileNoise>& noise);

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <pugixml.hpp>
-#include <set>
 
 #include "tools/effects/input_class.h"
 #include "tools/effects/insertion.h"
 #include "tools/format/columns.h"
+#include "tools/format/row_counts.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -93,16 +93,10 @@ double mean_of_cells(const model::CandidateInput& candidate) {
   return count > 0 ? sum / count : 0;
 }
 
-/// True for a column that counts the rows of its table (Nr, No, Lfd_Nr; column_: the heading #): no quantity
-/// that a machine can depend on, and no other file is asked for it.
+/// True for a column that counts the rows of its table: no quantity that a machine can depend on, and no
+/// other file is asked for it.
 bool counts_rows(const model::CandidateInput& candidate) {
-  static const std::set<std::string> kWords = {"nr",    "no",    "num", "nummer", "number", "lfd",  "row",
-                                               "zeile", "index", "idx", "line",   "point",  "punkt"};
-  if (!candidate.unit.empty()) return false;
-  const std::vector<std::string> words = text::words_in(text::in_small_letters(candidate.name), "_.");
-  return (candidate.name == "column_" ||
-          (!words.empty() && std::all_of(words.begin(), words.end(),
-                                         [](const std::string& word) { return kWords.contains(word); }))) &&
+  return format::names_row_count(candidate.name, candidate.unit) &&
          std::all_of(candidate.value.begin(), candidate.value.end(), [](double value) {
            return !std::isfinite(value) || (value >= 0 && value == std::floor(value));
          });

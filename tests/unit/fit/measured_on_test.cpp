@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rows that a board had corrected are rows of the machine without it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -118,6 +119,18 @@ TEST(MeasuredOn, ReadingsOfOnePoseRepeatWhereTheCorrectionsAgree) {
   // A residual is beside what the board added: one pose, whatever was on.
   EXPECT_EQ(row_conditions(m, 0), row_conditions(m, 3));
   EXPECT_NE(row_conditions(m, 0), row_conditions(m, 4));
+}
+
+// Each row has its own number: with it no reading would be a repeat.
+TEST(MeasuredOn, TheNumberOfARowIsNoConditionOfItsReading) {
+  const Machine machine = parse_machine(support::bridge_text(4), "bridge.xml");
+  for (const std::string heading : {"Nr", "Lfd_Nr", "cycles"}) {
+    std::string text = heading + ",X[mm],Y[mm],Z[mm],x[mm]\n";
+    for (int i = 0; i < 16; ++i) text += fmt::format("{},{},20,-30,1.00{}\n", i + 1, 10 * (i % 8), i / 8 * 2);
+    const Measurement m = parse_measurement(text, "repeats.csv", machine);
+    ASSERT_EQ(noise_um(m).has_value(), heading != "cycles") << heading;
+    EXPECT_NEAR(noise_um(m).value_or(std::sqrt(2.0)), std::sqrt(2.0), 1e-9) << heading;
+  }
 }
 
 }  // namespace

@@ -129,13 +129,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   options.most_effects = arguments.most;
   Progress progress("diagnose");
   options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
-  diagnose::Diagnosis diagnosis = diagnose::diagnose(text, machine, m, options);
-  // An estimate of u contains the errors that the found effects explain.
-  constexpr int kMostRepeats = 2;
-  for (int count = 0; count < kMostRepeats && diagnosis.ladder.size() > 1 &&
-                      estimate_noise_again(diagnosis.machine_text, machine, m, noise);
-       ++count)
-    diagnosis = diagnose::diagnose(text, machine, m, options);
+  diagnose::Diagnosis diagnosis = diagnose_and_estimate_noise(text, machine, m, noise, options);
   for (const std::string& sentence : noise_sentences(noise)) diagnosis.explanation += " " + sentence;
   for (const std::string& sentence : column_sentences) diagnosis.explanation += " " + sentence;
   diagnosis.next_measurement = plan::advice_for(text, machine, m, diagnosis, options.effects);

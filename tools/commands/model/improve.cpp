@@ -155,7 +155,7 @@ class Improver {
     options.effects = effects_;
     Progress progress("diagnose");
     options.progress = [&](double share, const std::string& step) { progress.update(share, step); };
-    diagnose::Diagnosis d = diagnose::diagnose(text_, machine_, rows_, options);
+    diagnose::Diagnosis d = diagnose_and_estimate_noise(text_, machine_, rows_, noise_, options);
     for (const std::string& sentence : column_sentences_) d.explanation += " " + sentence;
     for (const std::string& sentence : noise_sentences(noise_)) d.explanation += " " + sentence;
     d.next_measurement = plan::advice_for(text_, machine_, rows_, d, effects_);

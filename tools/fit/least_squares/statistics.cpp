@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "tools/format/columns.h"
+#include "tools/format/row_counts.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain/prediction.h"
 
@@ -47,8 +48,10 @@ std::vector<double> row_conditions(const model::Measurement& m, std::size_t row)
   if (!m.other_end.empty() && m.other_end[row] != model::kNoRow) add_pose(m, m.other_end[row], key);
   key.push_back(s.feed[at]);
   key.push_back(s.curvature[at]);
-  for (const model::CandidateInput& candidate : m.candidates)
+  for (const model::CandidateInput& candidate : m.candidates) {
+    if (format::names_row_count(candidate.name, candidate.unit)) continue;
     key.push_back(std::isnan(candidate.value[at]) ? model::kLongWay : candidate.value[at]);
+  }
   return key;
 }
 
