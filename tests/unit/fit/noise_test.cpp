@@ -90,6 +90,11 @@ TEST(NoiseModel, WhiteningInvertsTheCovariance) {
     EXPECT_LT((unit - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-10);
     EXPECT_NEAR(log_det,
                 2 * Eigen::LLT<Eigen::MatrixXd>(covariance).matrixLLT().diagonal().array().log().sum(), 1e-9);
+    // The transposed matrix, and the matrix itself, of the columns of the identity.
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(n, n), transposed = matrix;
+    whiten(layout, model, matrix);
+    whiten_transposed(layout, model, transposed);
+    EXPECT_LT((transposed - matrix.transpose()).norm(), 1e-12 * matrix.norm());
   }
 }
 

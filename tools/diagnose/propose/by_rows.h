@@ -11,11 +11,14 @@
 
 namespace vernier::diagnose {
 
-/// Scores candidates without their columns, while the errors of the observations are independent. The scalar
-/// product of a direction and a column is a sum over the rows: function of the row, times the sum of the
-/// response times the direction over the observations of this row. The second factor depends on the location
-/// only, the first on the family only. A tracker survey has three observations in a row, and tens of
-/// locations for each function: the scalar products cost a small part of those with explicit columns.
+/// Scores candidates without keeping their columns. The scalar product of a direction and a whitened column
+/// is that of the direction, multiplied by the transposed whitening, and the column before whitening: a sum
+/// over the rows, function of the row, times the sum of the response times the direction over the
+/// observations of this row. The second factor depends on the location only, the first on the family only. A
+/// tracker survey has three observations in a row, and tens of locations for each function: the scalar
+/// products cost a small part of those with explicit columns. The norms and grams of the columns need no
+/// whitened columns either, while the errors of the observations are independent; else they are computed once
+/// for each whitening.
 class ByRows {
  public:
   explicit ByRows(const Evidence& evidence) : evidence_(evidence) {}
@@ -45,6 +48,7 @@ class ByRows {
   const Evidence& evidence_;
   std::size_t revision_ = 0;
   double own_ = 1;             // standard deviation of the observations, in units of u
+  Eigen::MatrixXd absorbed_;   // the model's columns after the transposed whitening
   std::vector<Place> places_;  // by the index of Evidence::places
   std::vector<std::optional<ProjectedBatch>> batches_;
   KnownProducts products_;

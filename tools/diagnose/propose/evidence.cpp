@@ -404,6 +404,11 @@ void Evidence::whiten(Eigen::MatrixXd& columns) const {
   if (!noise_.independent() || noise_.own != 1) vernier::fit::whiten(layout_, noise_, columns);
 }
 
+void Evidence::whiten_transposed(Eigen::MatrixXd& columns) const {
+  if (!noise_.independent() || noise_.own != 1) vernier::fit::whiten_transposed(layout_, noise_, columns);
+  share_poses(columns);  // a symmetric matrix
+}
+
 std::vector<int> Evidence::parts_of_runs() const {
   std::map<std::size_t, std::vector<std::size_t>> rows_of_run;
   for (const std::size_t row : rows_) {

@@ -123,6 +123,8 @@ class Evidence {
   fit::NoiseModel noise_of_file() const;
   /// Whitens columns over the fit observations with the noise model noise().
   void whiten(Eigen::MatrixXd& columns) const;
+  /// Multiplies columns by the transpose of the matrix of whiten().
+  void whiten_transposed(Eigen::MatrixXd& columns) const;
 
   /// Range of an axis over the fit rows, and the mean distance between neighbouring different positions.
   struct Range {

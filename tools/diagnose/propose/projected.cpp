@@ -57,8 +57,15 @@ Eigen::MatrixXd KnownProducts::products(const std::vector<std::size_t>& prepared
   return all;
 }
 
+namespace {
+
+constexpr Eigen::Index kMost = 20'000'000;  // numbers in a store: 160 MB
+
+}  // namespace
+
+bool ProjectedColumns::have_room(Eigen::Index numbers) { return numbers <= kMost; }
+
 void ProjectedColumns::renew(const Evidence& evidence, std::size_t candidates) {
-  constexpr Eigen::Index kMost = 20'000'000;  // numbers: 160 MB
   if (revision_ != evidence.revision()) {
     revision_ = evidence.revision();
     room_ = kMost;

@@ -80,6 +80,8 @@ class ProjectedColumns {
   Eigen::MatrixXd products_of(const std::vector<std::size_t>& prepared, std::size_t at);
   /// Returns the stored sines and cosines of a candidate, or null if they are not stored.
   const ProjectedWaves* waves(std::size_t candidate) const;
+  /// True if an empty store has room for this number of values.
+  static bool have_room(Eigen::Index numbers);
   /// Returns the number of values for which the store has room.
   Eigen::Index room() const { return room_; }
   /// True if the store has room for this number of values.

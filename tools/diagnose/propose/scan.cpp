@@ -239,9 +239,15 @@ Scanner::Sources Scanner::sources(const AcceptedColumns& accepted) const {
   return sources;
 }
 
+bool Scanner::scans_by_rows() const {
+  return evidence_.observations_are_independent() ||
+         !ProjectedColumns::have_room(evidence_.residual().size() *
+                                      static_cast<Eigen::Index>(candidates_.size()));
+}
+
 std::vector<std::size_t> Scanner::prepare(const Sources& sources, std::size_t first_candidate) {
   families_.extend();
-  if (!evidence_.observations_are_independent()) {
+  if (!scans_by_rows()) {
     kept_.renew(evidence_, candidates_.size());
     return kept_.products().prepare(sources.columns, kept_.batches().size());
   }
@@ -258,7 +264,7 @@ std::vector<Scored> Scanner::scan(const AcceptedColumns& accepted,
   const ScanTarget target = this->target(accepted.basis);
   const Sources sources = this->sources(accepted);
   const std::vector<std::size_t> prepared = prepare(sources, first_candidate);
-  const bool by_rows = evidence_.observations_are_independent();
+  const bool by_rows = scans_by_rows();
   std::vector<Scored> best(candidates_.size());
   // Each thread writes the entries of its own candidates only.
   std::mutex mutex;

@@ -75,6 +75,9 @@ class Scanner {
   struct Sources;
   /// Returns the sources of the directions of target(accepted.basis).
   Sources sources(const AcceptedColumns& accepted) const;
+  /// True if the candidates are scored by the rows, without stored columns: the errors are independent, or
+  /// the record is too long to store one column of each candidate.
+  bool scans_by_rows() const;
   /// Prepares a scan of the candidates from `first_candidate` on beside the columns of `sources`. Returns the
   /// numbers of the stored products of these columns; empty if the scan is by rows.
   std::vector<std::size_t> prepare(const Sources& sources, std::size_t first_candidate);

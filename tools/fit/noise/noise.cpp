@@ -83,6 +83,14 @@ double whiten(const NoiseLayout& layout, const NoiseModel& model, Eigen::MatrixX
   return own + log_det;
 }
 
+void whiten_transposed(const NoiseLayout& layout, const NoiseModel& model, Eigen::MatrixXd& columns) {
+  columns /= model.own;
+  if (model.independent()) return;
+  Eigen::MatrixXd readings = columns.transpose();
+  whiten_transposed(layout, ratios_of(model), readings);
+  columns = readings.transpose();
+}
+
 Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& model,
                                  const Eigen::MatrixXd& columns) {
   const Eigen::MatrixXd x = columns.transpose();

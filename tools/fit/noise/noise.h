@@ -67,6 +67,9 @@ std::vector<NoiseStep> set_up_steps(const NoiseLayout& layout);
 /// times the number of columns. The function returns the logarithm of the determinant of the covariance.
 double whiten(const NoiseLayout& layout, const NoiseModel& model, Eigen::MatrixXd& columns);
 
+/// Multiplies `columns` by the transpose of the matrix of whiten().
+void whiten_transposed(const NoiseLayout& layout, const NoiseModel& model, Eigen::MatrixXd& columns);
+
 /// Returns the product of the covariance of the weighted readings and `columns`. The computing time is
 /// proportional to the number of rows times the number of columns.
 Eigen::MatrixXd covariance_times(const NoiseLayout& layout, const NoiseModel& model,

@@ -9,7 +9,7 @@ namespace vernier::fit {
 
 /// Limit for the number of readings times the square of the number of fitted columns. Above the limit, an
 /// evaluation of the likelihood uses only the number of fitted columns, not their values.
-inline constexpr double kMostNoiseProducts = 6e7;
+inline constexpr double kMostNoiseProducts = 2e7;
 
 /// Estimates the noise model from a residual by restricted maximum likelihood (Patterson and Thompson 1971),
 /// which accounts for the fitted columns. `residual`: the weighted residual; large values are first limited

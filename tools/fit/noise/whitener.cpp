@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace vernier::fit {
 namespace {
@@ -42,6 +43,30 @@ class Filter {
   /// Whitens the readings of the series in place. Returns the logarithm of the determinant.
   double run(Eigen::MatrixXd& readings) {
     return readings.rows() == 1 ? run_rows<1>(readings) : run_rows<Eigen::Dynamic>(readings);
+  }
+
+  /// The steps of run(), each transposed, from the last reading to the first.
+  void run_transposed(Eigen::MatrixXd& readings) {
+    struct Step {
+      std::array<double, kActive> factor, gain;
+      double variance;
+    };
+    std::vector<Step> steps(series_.reading.size());
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      Step& step = steps[i];
+      step.factor.fill(1);
+      predict(i, [&](int k, double factor) { step.factor[at(k)] *= factor; });
+      step.variance = update();
+      step.gain = gain_;
+    }
+    Eigen::MatrixXd state = Eigen::MatrixXd::Zero(readings.rows(), kActive);
+    for (std::size_t i = steps.size(); i-- > 0;) {
+      const Step& step = steps[i];
+      auto reading = readings.col(series_.reading[i]);
+      reading /= std::sqrt(step.variance);
+      for (int k = 0; k < kActive; ++k) reading += step.gain[at(k)] * state.col(k);
+      for (int k = 0; k < kActive; ++k) state.col(k) = step.factor[at(k)] * (state.col(k) - reading);
+    }
   }
 
  private:
@@ -137,7 +162,9 @@ class Filter {
   double interval_ = 0, rho_ = 1;
 };
 
-double whiten(const NoiseSeries& series, const NoiseRatios& ratios, Eigen::MatrixXd& readings) {
+/// Calls use(filter) with the filter of a series, unless its readings are independent.
+template <class Use>
+void with_filter(const NoiseSeries& series, const NoiseRatios& ratios, const Use& use) {
   std::array<int, kStates> states{};
   int active = 0;
   const auto take = [&](int state, double variance) {
@@ -146,24 +173,23 @@ double whiten(const NoiseSeries& series, const NoiseRatios& ratios, Eigen::Matri
   take(0, is_drifting(ratios.drifts, series.kind) ? ratios.drift : 0);
   take(1, ratios.run);
   take(2, ratios.pose);
-  switch (active) {
-    case 1:
-      return Filter<1>(series, ratios, states).run(readings);
-    case 2:
-      return Filter<2>(series, ratios, states).run(readings);
-    case 3:
-      return Filter<3>(series, ratios, states).run(readings);
-    default:
-      return 0;  // independent readings
-  }
+  if (active == 1) use(Filter<1>(series, ratios, states));
+  if (active == 2) use(Filter<2>(series, ratios, states));
+  if (active == 3) use(Filter<3>(series, ratios, states));
 }
 
 }  // namespace
 
 double whiten(const NoiseLayout& layout, const NoiseRatios& ratios, Eigen::MatrixXd& readings) {
   double log_det = 0;
-  for (const NoiseSeries& series : layout.series) log_det += whiten(series, ratios, readings);
+  for (const NoiseSeries& series : layout.series)
+    with_filter(series, ratios, [&](auto filter) { log_det += filter.run(readings); });
   return log_det;
+}
+
+void whiten_transposed(const NoiseLayout& layout, const NoiseRatios& ratios, Eigen::MatrixXd& readings) {
+  for (const NoiseSeries& series : layout.series)
+    with_filter(series, ratios, [&](auto filter) { filter.run_transposed(readings); });
 }
 
 }  // namespace vernier::fit
