@@ -159,8 +159,9 @@ std::vector<std::string> notes_of_missing_directions(const model::Machine& machi
       notes.push_back(fmt::format(
           "{} has no {}, and another file has. The model predicts no reversal error (backlash) for these "
           "rows, "
-          "so that they contradict one. Add the approach direction of each row: 1 if the axis moved in the "
-          "positive direction, -1 in the negative direction",
+          "so that they contradict one. If the rows are in the order of the measurement, import the file "
+          "again "
+          "with the directions of the motion (import table --directions from-order)",
           rows.files[file], fmt::join(missing[file], ", ")));
   return notes;
 }

@@ -10,6 +10,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/import/columns/column_guess.h"
+#include "tools/import/order/motion_directions.h"
 #include "tools/import/sizes/odd_runs.h"
 
 namespace vernier::lint {

@@ -99,6 +99,7 @@ TEST(Sheets, WordsOfARequestAreTextsAndLists) {
   EXPECT_EQ(words.fill, std::vector<std::string>{"T"});
   EXPECT_TRUE(words.one_motion);
   EXPECT_FALSE(sheet_words(json::object()).one_motion);
+  EXPECT_EQ(sheet_words(json{{"directions", "from-order"}}).directions, "from-order");
   EXPECT_THROW(sheet_words(json{{"column", "X[mm]=1"}}), InputError);
   EXPECT_THROW(sheet_words(json{{"unit", 3}}), InputError);
   EXPECT_THROW(sheet_words(json{{"set", {1}}}), InputError);

@@ -232,6 +232,10 @@ void add_table_kind(CLI::App& kind) {
   kind.add_option("--sign", arguments->words.sign,
                   "sign of all deviations of the table, if its texts do not state the sign clearly")
       ->check(CLI::IsMember({"actual-nominal", "nominal-actual"}));
+  kind.add_option("--directions", arguments->words.directions,
+                  "from-order: an axis without a column of directions (dirX) has the direction of its last "
+                  "motion in the run; the rows must be in the order of the measurement")
+      ->check(CLI::IsMember({importer::kFromOrder}));
   kind.add_option("--unit", arguments->words.unit,
                   "unit of the lengths and angles whose heading has no unit");
   kind.add_option("--separator", arguments->words.separator, "default: detected and printed")

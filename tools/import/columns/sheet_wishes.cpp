@@ -150,13 +150,15 @@ void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std:
         wishes.format.comment = value == "none" ? "" : value;
       else if (name == "sign")
         wishes.turned = turned_of(value, place);
+      else if (name == "directions" && value == kFromOrder)
+        wishes.directions_from_order = true;
       else if (name == "unit" && sheet::unit_meant(value))
         wishes.unit = *sheet::unit_meant(value);
       else
         throw text::InputError(
             place, name,
             "this line of the profile has an unknown keyword; known keywords are column, deviation, leave, "
-            "fill, set, separator, decimal, skip, table, sheet, comment, unit, sign");
+            "fill, set, separator, decimal, skip, table, sheet, comment, unit, sign, directions");
     }
   }
 }
@@ -187,6 +189,7 @@ std::string sheet_profile(const sheet::Sheet& sheet, const sheet::SheetTable& ta
       text += (column.use == SheetColumn::Use::kDeviation ? "deviation " : "column ") + heading + " = " +
               format::heading(column.name, column.unit) + "\n";
   }
+  if (wishes.directions_from_order) text += fmt::format("directions = {}\n", kFromOrder);
   if (wishes.plausible.mm) text += fmt::format("deviation {}mm\n", *wishes.plausible.mm);
   if (wishes.plausible.deg) text += fmt::format("deviation {}deg\n", *wishes.plausible.deg);
   for (const std::string& heading : wishes.fill) text += "fill " + heading + "\n";

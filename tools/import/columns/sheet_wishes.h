@@ -32,6 +32,9 @@ struct SheetColumn {
   std::string sign_from = {};  // text outside the headings that states the sign of this deviation clearly
 };
 
+/// Word of the option --directions: an axis without a column of directions has that of its last motion.
+inline constexpr const char* kFromOrder = "from-order";
+
 /// Description of the columns by the user: assignments by heading or number, constants, and the unit of
 /// headings without a unit.
 struct SheetWishes {
@@ -49,6 +52,8 @@ struct SheetWishes {
   std::optional<bool> turned;     // sign of all deviations as the user states it: true: nominal - actual
   PlausibleDeviation plausible;   // largest plausible deviations, as the user states them
   bool one_motion = false;        // true: columns of several axes side by side are poses of all axes together
+  bool directions_from_order = false;  // true: an axis without a column of directions has that of its last
+                                       // motion, by the order of the rows
 };
 
 /// Adds an assignment of the form "x[mm]=X ist" (name=heading). The form "X ist=x[mm]" is also accepted, as
@@ -64,7 +69,7 @@ void assign_deviation(SheetWishes& wishes, const std::string& words, const text:
 /// line; comments begin with #:
 ///   separator = semicolon    decimal = comma    skip = 2    sheet = Tabelle1    unit = mm
 ///   column X ist = x[mm]     deviation Abw. = X[um]     leave Bemerkung     set run = a
-///   fill Lauf                sign = nominal-actual
+///   fill Lauf                sign = nominal-actual     directions = from-order
 /// If the profile is not valid, throws InputError with file, line and word.
 void read_sheet_profile(SheetWishes& wishes, const std::string& text, const std::string& file);
 /// Returns true for "nominal-actual" and false for "actual-nominal". Throws InputError for other words.

@@ -60,6 +60,11 @@ SheetWishes wishes_of(const SheetWords& words, SheetWishes wishes) {
   wishes.fill.insert(wishes.fill.end(), words.fill.begin(), words.fill.end());
   wishes.one_motion |= words.one_motion;
   if (!words.sign.empty()) wishes.turned = turned_of(words.sign);
+  if (!words.directions.empty()) {
+    if (words.directions != kFromOrder)
+      throw text::InputError(fmt::format("--directions {}: only {} is known", words.directions, kFromOrder));
+    wishes.directions_from_order = true;
+  }
   if (!words.unit.empty()) {
     const auto unit = sheet::unit_meant(words.unit);
     if (!unit)
@@ -374,6 +379,12 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   note_rotating_frame(result);
   judge_sizes(result);
   note_exchanged_headings(result.sheet, result.table, result.columns);
+  if (result.wishes.directions_from_order)
+    result.sheet.notes.push_back(
+        "an axis without a column of directions has the direction of its last motion in the run (0: before "
+        "its "
+        "first motion); this is right if the rows are in the order of the measurement, and if the axes moved "
+        "to each position without overshoot");
   return result;
 }
 

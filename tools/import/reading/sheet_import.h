@@ -14,7 +14,8 @@ namespace vernier::importer {
 /// option is detected from the file.
 struct SheetWords {
   std::string separator, decimal, comment, sheet, unit;
-  std::string sign;  // "actual-nominal" or "nominal-actual", for all deviations
+  std::string sign;        // "actual-nominal" or "nominal-actual", for all deviations
+  std::string directions;  // "from-order": by the order of the rows, for axes without a column
   std::optional<std::size_t> skip, table;
   std::vector<std::string> columns, deviations, constants, left;
   std::vector<std::string> fill;  // headings of columns whose empty cells have the value above them

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "tools/format/columns.h"
+#include "tools/import/order/motion_directions.h"
 #include "tools/import/sizes/expected_readings.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/sheet_number.h"
@@ -43,27 +44,6 @@ struct TypedColumn {
   std::vector<std::size_t> row, decimals;
 };
 
-/// The approach direction by the motion to the position, if the table has no column of directions. A second
-/// reading at a position begins the motion to the next one: a run back that begins where the run out ended.
-void settle_directions_by_order(std::vector<PlacedReading>& readings) {
-  int next = 0;
-  std::vector<int> behind(readings.size(), 0);  // direction of the next motion
-  for (std::size_t i = readings.size(); i-- > 1;) {
-    const double step = readings[i].position - readings[i - 1].position;
-    behind[i] = next;
-    next = step > 0 ? 1 : step < 0 ? -1 : next;
-  }
-  int sense = next;
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    const double step = i == 0 ? 0 : readings[i].position - readings[i - 1].position;
-    if (step != 0)
-      sense = step > 0 ? 1 : -1;
-    else if (i > 0 && behind[i] != 0)
-      sense = behind[i];
-    readings[i].sense = sense;
-  }
-}
-
 TypedColumn typed_column(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                          const std::vector<SizedColumn>& columns, std::size_t k) {
   TypedColumn typed;
@@ -91,7 +71,12 @@ TypedColumn typed_column(const sheet::Sheet& sheet, const sheet::SheetTable& tab
     typed.row.push_back(row);
     typed.decimals.push_back(sheet::decimals_of(sheet.rows[row][k], sheet.decimal_comma));
   }
-  if (!sense) settle_directions_by_order(typed.readings);
+  if (!sense) {
+    std::vector<double> positions;
+    for (const PlacedReading& one : typed.readings) positions.push_back(one.position);
+    const std::vector<int> directions = directions_by_motion(positions, {});
+    for (std::size_t i = 0; i < directions.size(); ++i) typed.readings[i].sense = directions[i];
+  }
   return typed;
 }
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "tools/format/columns.h"
+#include "tools/import/order/motion_directions.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/sheet_number.h"
 
@@ -184,19 +185,6 @@ void note_repeated_line(sheet::Sheet& sheet, const sheet::SheetTable& table) {
 }
 
 }  // namespace
-
-std::vector<int> directions_by_motion(const std::vector<double>& positions,
-                                      const std::vector<std::string>& runs) {
-  std::vector<int> direction(positions.size(), 0);
-  int next = 0;
-  for (std::size_t i = positions.size(); i-- > 0;) {
-    if (i + 1 < positions.size() && runs[i] != runs[i + 1]) next = 0;
-    if (i > 0 && runs[i] == runs[i - 1] && positions[i] != positions[i - 1])
-      next = positions[i] > positions[i - 1] ? 1 : -1;
-    direction[i] = next;
-  }
-  return direction;
-}
 
 std::optional<std::pair<std::string, std::string>> opposite_run(
     const std::map<std::string, RunDeviations>& runs) {

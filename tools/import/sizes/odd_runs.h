@@ -15,11 +15,6 @@ namespace vernier::importer {
 /// The deviations of one run: position and approach direction (1, -1), deviation.
 using RunDeviations = std::map<std::pair<double, int>, double>;
 
-/// Returns the direction of the motion to each position (1, -1; 0: no motion) in its run. The first position
-/// of a run, and a position that is the one before again, have the direction of the next motion.
-std::vector<int> directions_by_motion(const std::vector<double>& positions,
-                                      const std::vector<std::string>& runs);
-
 /// Returns the run whose deviations have the opposite sign of those of the other runs at all common places,
 /// and one of these runs; nullopt: no such run. Of two runs, the second one. The sign of a run that only
 /// scatters about zero agrees by chance with no other run: the residual of the comparison must be small.

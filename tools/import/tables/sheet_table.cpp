@@ -13,6 +13,7 @@
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/columns/column_values.h"
 #include "tools/import/columns/sheet_columns.h"
+#include "tools/import/order/motion_directions.h"
 #include "tools/import/tables/assignments_to_try.h"
 #include "tools/import/tables/run_pairs.h"
 #include "tools/import/words/sheet_words.h"
@@ -489,6 +490,8 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
         {constant.name, constant.unit,
          std::vector<std::string>(result.line.size(), constant_cell(constant, sheet.decimal_comma))});
   }
+  if (wishes.directions_from_order)
+    add_directions_from_order(result, [&](const std::string& name) { return guess.is_axis(name); });
   refuse_readings_without_position(result, guess);
   return result;
 }

@@ -123,6 +123,7 @@ importer::SheetWords sheet_words(const nlohmann::json& request) {
   words.sheet = text_or_none(request, "sheet");
   words.unit = text_or_none(request, "unit");
   words.sign = text_or_none(request, "sign");
+  words.directions = text_or_none(request, "directions");
   if (const auto skip = request.find("skip"); skip != request.end() && skip->is_number_integer())
     words.skip = static_cast<std::size_t>(std::max<std::int64_t>(0, skip->get<std::int64_t>()));
   if (const auto table = request.find("table"); table != request.end() && table->is_number_integer())

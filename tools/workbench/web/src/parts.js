@@ -44,6 +44,10 @@ export const programWords = (words) =>
   words
     ?.replace(kTool, toolWords)
     .replace(
+      / \(import table --directions from-order\)/g,
+      ' under Project: press "read differently" beside the file, and choose "from-order" in the field "directions"',
+    )
+    .replace(
       / \(import table --set "([^"]+)"\)/g,
       ' under Project: press "read differently" beside the file, and write $1 into the field "set"',
     );
