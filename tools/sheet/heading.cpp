@@ -312,14 +312,24 @@ void refuse_rows_of_words(const Sheet& sheet) {
                   : "; columns may be separated by comma, semicolon, tab, | or blanks (--separator)"));
 }
 
+/// True for a unit of length in round brackets that is not read: "(ft)". Other words in round brackets are
+/// often no units.
+bool is_foreign_length(const std::string& words) {
+  static const std::set<std::string> kWords = {"ft", "feet", "foot", "yd", "yard", "yards", "dm"};
+  return kWords.contains(text::in_small_letters(text::trimmed(words)));
+}
+
 /// A unit may be written in two cells, and then both state the same.
 void refuse_two_units(const Sheet& sheet, std::size_t row, const std::string& cell, const std::string& unit,
                       std::size_t heading_row, const std::string& heading, const std::string& heading_unit) {
   if (heading_unit.empty() || unit.empty() || unit == heading_unit) return;
-  throw text::InputError({sheet.file, sheet.line[row]}, cell,
-                         fmt::format("the heading \"{}\" in line {} has the unit {}, this cell below it {}: "
-                                     "correct the wrong one of the two cells",
-                                     heading, std::to_string(sheet.line[heading_row]), heading_unit, unit));
+  const std::string text_of_readings =
+      unit_meant(cell) ? "" : "; if this line is a text about the readings, move it above the headings";
+  throw text::InputError(
+      {sheet.file, sheet.line[row]}, cell,
+      fmt::format("the heading \"{}\" in line {} has the unit {}, this cell below it {}: "
+                  "correct the wrong one of the two cells{}",
+                  heading, std::to_string(sheet.line[heading_row]), heading_unit, unit, text_of_readings));
 }
 
 /// The unit of a cell in a line of headings: the cell is the unit, or has the unit; else empty.
@@ -421,7 +431,7 @@ Heading parse_heading(std::string_view cell) {
       }
       return heading;
     }
-    if (open == '[') {
+    if (open == '[' || is_foreign_length(text.substr(begin + 1, end - begin - 1))) {
       heading.unknown_unit = text::trimmed(text.substr(begin + 1, end - begin - 1));
       heading.name = text::trimmed(text.substr(0, begin));
     }

@@ -52,6 +52,11 @@ std::optional<std::string> plain_number(std::string_view cell, bool decimal_comm
     text.pop_back();
     text.insert(0, "-");
   }
+  // "- 4,0", often with a blank that does not break.
+  if (text.size() > 2 && (text.front() == '-' || text.front() == '+') && text[1] == ' ') {
+    const std::size_t digit = text.find_first_not_of(' ', 1);
+    if (digit != std::string::npos && is_digit(text[digit])) text.erase(1, digit - 1);
+  }
   for (const char sign : {' ', '\''})
     if (!take_thousands(text, sign)) return std::nullopt;
   const char point = decimal_comma ? ',' : '.', thousands = decimal_comma ? '.' : ',';

@@ -98,6 +98,20 @@ TEST_F(ImportRemedies, OfARobotProposeTheAssignmentOfItsJoints) {
               testing::StartsWith("J1[deg],J2[deg],x[mm],y[mm]\n10,20,"));
 }
 
+TEST_F(ImportRemedies, OfARobotWithoutUnitsAreOneCall) {
+  text::write_file(folder + "/arm.xml", kArm);
+  for (const char* const head : {"pose,A1,A2,X,Y,Z\n", "pose,a1,a2,x,y,z\n"})
+    for (const char* const unit : {"", " --unit deg", " --unit mm"}) {
+      text::write_file(folder + "/log.csv",
+                       std::string(head) + "1,10,20,1,2,3\n2,11,21,3,4,5\n3,12,25,5,6,7\n");
+      ASSERT_EQ(run(std::string("vernier import table log.csv --machine arm.xml -o read.csv") + unit), 1)
+          << said;
+      ASSERT_EQ(run(remedy()), 0) << said;
+      EXPECT_THAT(text::read_file(folder + "/read.csv"),
+                  testing::StartsWith("pose,J1[deg],J2[deg],x[mm],y[mm],z[mm]\n1,10,20,"));
+    }
+}
+
 TEST_F(ImportRemedies, JointsWithTheNumbersAndUnitsOfTheAxesAreRead) {
   text::write_file(folder + "/arm.xml", kArm);
   text::write_file(folder + "/log.csv", "A1 [deg],A2 [deg],x [mm],y [mm]\n10,20,1,2\n11,21,3,4\n12,25,5,6\n");

@@ -193,6 +193,25 @@ TEST(PrinterFile, LevellingAndRepeatsAreNoSurveyOfTheBed) {
   EXPECT_THAT(read(two, options), HasSubstr("the log has no survey of this number"));
 }
 
+TEST(PrinterFile, SurveysAtSeveralTemperaturesAreOneTableUnlessOneIsChosen) {
+  std::string log;
+  for (const char* const heat : {"25.0", "60.0"}) {
+    log += std::string("Stats 10.0: heater_bed: target=60 temp=") + heat + "\n";
+    for (const char* const point : {"0,0", "9,0", "9,9", "0,9"})
+      log += std::string("probe at ") + point + " is z=" + heat + "\n";
+  }
+  PrinterOptions options;
+  const PrinterFile both = read_printer_file(log, "klippy.log", options);
+  EXPECT_EQ(both.table.line.size(), 8u);
+  EXPECT_EQ(both.surveys,
+            "1 (4 touches from line 2, bed at 25 degC), 2 (4 touches from line 7, bed at 60 degC)");
+  options.series = 2;
+  const PrinterFile hot = read_printer_file(log, "klippy.log", options);
+  EXPECT_EQ(hot.table.line.size(), 4u);
+  EXPECT_EQ(hot.table.numbers("Z").front(), 60);
+  EXPECT_TRUE(hot.surveys.empty());
+}
+
 TEST(PrinterFile, PointsOfAHeightMapHaveItsSpacing) {
   const std::string map =
       "RepRapFirmware height map file "

@@ -49,6 +49,7 @@ void run_printer(PrinterArguments& arguments) {
                                           {"twist", read.twist},
                                           {"n_not_probed", read.not_probed},
                                           {"n_left_out", read.left_out},
+                                          {"surveys", read.surveys},
                                           {"n_rows", rows}});
   std::FILE* out = human_stream(arguments.output.json_path);
   fmt::print(out, "{}{}: {} touches of the artefact \"{}\"\n", name_of(read.kind),
@@ -72,6 +73,12 @@ void run_printer(PrinterArguments& arguments) {
         out,
         "note: the file does not state the offset of a probe: the rows are touches of the nozzle itself. "
         "If a probe touched, state --offset=X,Y in mm\n");
+  if (!read.surveys.empty())
+    fmt::print(
+        out,
+        "note: the log has surveys of the bed at several temperatures, which are read as one table: {}; "
+        "to read one of them, give --series with its number\n",
+        read.surveys);
   if (read.not_probed > 0)
     fmt::print(out, "{} points of the height map have no reading and are omitted\n", read.not_probed);
   if (read.left_out > 0)
@@ -106,7 +113,8 @@ void add_printer_kind(CLI::App& kind) {
       ->check(CLI::IsMember({"included", "add", "ignore"}))
       ->capture_default_str();
   kind.add_option("--series", arguments->options.series,
-                  "number of the survey of the bed, from 1, if a log has several");
+                  "number of the survey of the bed, from 1, if a log has several, or the bed at several "
+                  "temperatures");
   kind.add_option("--u", arguments->options.u_um, "standard uncertainty of a touch, um")
       ->check(CLI::PositiveNumber);
   add_import_output(kind, arguments->output);

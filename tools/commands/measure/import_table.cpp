@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -15,6 +16,7 @@
 #include "tools/lint/lint_table.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
+#include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
@@ -98,6 +100,74 @@ OpenAxes open_axes(const model::Machine& machine, const importer::SheetReading& 
   return open;
 }
 
+/// Largest size of the values of a column.
+double largest_of(const importer::SheetReading& reading, const std::string& heading) {
+  double largest = 0;
+  for (std::size_t k = 0; k < reading.table.headings.size(); ++k)
+    if (reading.table.headings[k].text == heading)
+      for (std::size_t row = reading.table.first_data; row < reading.sheet.rows.size(); ++row)
+        if (const auto value = sheet::number_at(reading.sheet, row, k))
+          largest = std::max(largest, std::abs(*value));
+  return largest;
+}
+
+/// Columns x, y, z in any letters, without a unit in the heading or by an option: words of --column that make
+/// them the measured point in mm. Empty without all three.
+std::vector<std::string> point_without_units(const importer::SheetReading& reading) {
+  std::vector<std::string> words;
+  for (const char* const name : {"x", "y", "z"})
+    for (std::size_t k = 0; k < reading.columns.size(); ++k) {
+      const sheet::Heading& heading = reading.table.headings[k];
+      if (text::in_small_letters(heading.name) != name || !heading.unit.empty() ||
+          reading.columns[k].why != "by its heading")
+        continue;
+      words.push_back(fmt::format("{}[mm]={}", name, heading.text));
+      break;
+    }
+  constexpr std::size_t kCoordinates = 3;
+  return words.size() == kCoordinates ? words : std::vector<std::string>{};
+}
+
+/// Refuses the log of a robot whose joints or point have no units, with one call that states all of them.
+void refuse_robot_without_units(const OpenAxes& open, const importer::SheetReading& reading,
+                                const CLI::App& kind) {
+  constexpr double kWholeTurn = 6.3;  // rad, rounded up: larger angles are in deg
+  // A unit by --unit is that of all columns, and may be right for one of the two only.
+  std::vector<std::string> stated;
+  for (const importer::FreeColumn& one : open.columns)
+    for (const sheet::Heading& heading : reading.table.headings)
+      if (heading.text == one.heading) {
+        stated.push_back(heading.unit);
+        break;
+      }
+  OpenAxes assumed = open;
+  for (std::size_t k = 0; k < assumed.columns.size(); ++k)
+    assumed.columns[k].unit = stated[k].empty() ? "deg" : stated[k];
+  assumed.found = importer::joint_columns(assumed.axes, assumed.columns);
+  const std::vector<std::string> point = point_without_units(reading);
+  if (!assumed.found.sure || point.empty()) return;
+  double largest = 0;
+  for (const auto& [axis, column] : assumed.found.pairs)
+    if (stated[column].empty())
+      largest = std::max(largest, largest_of(reading, open.columns[column].heading));
+  std::string options;
+  for (const auto& [axis, column] : assumed.found.pairs)
+    options += fmt::format(" --column \"{}{}={}\"", open.axes[axis].name,
+                           !stated[column].empty() ? ""
+                           : largest < kWholeTurn  ? "[rad]"
+                                                   : "[deg]",
+                           open.columns[column].heading);
+  for (const std::string& word : point) options += fmt::format(" --column \"{}\"", word);
+  const CLI::Option* const output = kind.get_option_no_throw("--output");
+  throw text::InputError(
+      {reading.sheet.file, reading.sheet.line[reading.table.heading_row]}, "",
+      fmt::format(
+          "the columns of the point have no unit. If the measured point is in mm, and the joints are in "
+          "the units of this call, give: {}{} -o {}",
+          call_of(kind, {"--output", "--json", "--unit", "--column"}), options,
+          output->count() > 0 ? lint::quoted_for_shell(output->results().front()) : "NEW.csv"));
+}
+
 /// The other sheets with tables, with a command for each: only one sheet is read.
 void note_other_sheets(sheet::Sheet& sheet, const CLI::App& kind) {
   if (kind.count("--sheet") > 0 || sheet.tables_beside.empty()) return;
@@ -132,6 +202,7 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
   OpenAxes open;
   if (machine) {
     open = open_axes(*machine, reading);
+    if (!open.axes.empty()) refuse_robot_without_units(open, reading, kind);
     if (open.found.sure) {
       const std::vector<std::string> more = open.words();
       words.columns.insert(words.columns.end(), more.begin(), more.end());

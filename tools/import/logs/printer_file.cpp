@@ -428,6 +428,13 @@ class ProbeLog {
     // One clock for all surveys of a log: the second survey of the bed does not begin at 0 s.
     const double begin = touches_.empty() ? 0 : touches_.front().t;
     for (Touch& one : touches_) one.t -= begin;
+    // Without a line that ends a survey, the log is one survey with a temperature, unless the user chooses.
+    if (const auto ends = ends_by_temperature(); series_.size() < 2 && ends.size() > 1) {
+      if (options_.series)
+        series_ = ends;
+      else
+        result_.surveys = list_of(ends);
+    }
     return chosen();
   }
 
@@ -508,15 +515,53 @@ class ProbeLog {
       for (std::size_t k = 0; one.of_probe && k < 2; ++k) one.axes[k] -= result_.offset_mm[k];
   }
 
+  /// The largest difference of a temperature between two touches, degC.
+  static double heated(const Touch& one, const Touch& other) {
+    double most = 0;
+    for (const auto& [name, value] : one.temperature)
+      if (const auto found = other.temperature.find(name); found != other.temperature.end())
+        most = std::max(most, std::abs(value - found->second));
+    return most;
+  }
+
+  /// Ends of the surveys: a touch at the first point of a survey again, at another temperature.
+  std::vector<std::size_t> ends_by_temperature() const {
+    constexpr double kSamePoint = 0.01;        // mm
+    constexpr double kHeated = 3;              // degC, above the control of a heater
+    constexpr std::size_t kFewestTouches = 4;  // of a survey of a bed
+    std::vector<std::size_t> ends;
+    std::size_t first = 0;
+    for (std::size_t i = 1; i < touches_.size(); ++i) {
+      const Touch &begin = touches_[first], &one = touches_[i];
+      if (i - first < kFewestTouches || std::abs(one.axes[0] - begin.axes[0]) > kSamePoint ||
+          std::abs(one.axes[1] - begin.axes[1]) > kSamePoint || heated(begin, one) < kHeated)
+        continue;
+      ends.push_back(i);
+      first = i;
+    }
+    if (!touches_.empty()) ends.push_back(touches_.size());
+    return ends;
+  }
+
+  /// "1 (25 touches from line 3, heater_bed 60 degC)" for each survey.
+  std::string list_of(const std::vector<std::size_t>& ends) const {
+    std::string list;
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      const Touch& begin = touches_[first];
+      const auto bed = begin.temperature.find("heater_bed");
+      list += fmt::format(
+          "{}{} ({} touches from line {}{})", k == 0 ? "" : ", ", k + 1, ends[k] - first, begin.line,
+          bed == begin.temperature.end() ? "" : fmt::format(", bed at {:.0f} degC", bed->second));
+      first = ends[k];
+    }
+    return list;
+  }
+
   /// The touches of the series that the user names, or of the only one.
   std::vector<Touch> chosen() const {
     if (series_.size() < 2 && !options_.series) return touches_;
-    std::string list;
-    for (std::size_t k = 0; k < series_.size(); ++k) {
-      const std::size_t first = begin_of(k);
-      list += fmt::format("{}{} ({} touches from line {})", k == 0 ? "" : ", ", k + 1, series_[k] - first,
-                          touches_[first].line);
-    }
+    const std::string list = list_of(series_);
     if (!options_.series)
       throw text::InputError(
           {file_, touches_[series_[0]].line}, "touches",

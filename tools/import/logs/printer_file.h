@@ -24,7 +24,8 @@ struct PrinterOptions {
   };
   Twist twist = Twist::kIncluded;
   std::optional<std::size_t> series;  // number of the survey in a log with several surveys, from
-                                      // 1
+                                      // 1; also of one that begins at its first point again at
+                                      // another temperature
 };
 
 /// Touches on the bed of a 3D printer.
@@ -37,6 +38,8 @@ struct PrinterFile {
   bool offset_known = true;              // false: a log of nozzle positions without a probe offset
   std::size_t not_probed = 0;            // number of positions of a height map without a reading
   std::size_t left_out = 0;              // number of touches in a log that the printer discarded
+  std::string surveys;                   // of a log that is read as one survey: the surveys at other
+                                         // temperatures that it seems to have; empty: none
   ImportTable table;                     // columns X[mm], Y[mm], Z[mm], on; probeX[mm] and probeY[mm] if the
                                          // probe has an offset; if known u, t[s], temperatures
 };

@@ -13,6 +13,7 @@
 #include "tools/import/reading/degree_cells.h"
 #include "tools/import/reading/invalid_rows.h"
 #include "tools/import/reading/odd_rows.h"
+#include "tools/import/reading/other_quantities.h"
 #include "tools/import/reading/paired_sheets.h"
 #include "tools/import/reading/plain_cells.h"
 #include "tools/import/reading/rows_below.h"
@@ -377,6 +378,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   note_signs(result);
   if (!unfolded_axes) note_sparse_columns(result);  // the rows of the other axes have no reading
   note_rotating_frame(result);
+  judge_other_quantities(result.sheet, result.table, result.columns);
   judge_sizes(result);
   note_exchanged_headings(result.sheet, result.table, result.columns);
   if (result.wishes.directions_from_order)

@@ -4,17 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tools/format/units.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/maths/median.h"
+#include "tools/sheet/sheet_number.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -38,9 +41,12 @@ std::string axis_shown(const sheet::Heading& heading, const Guess& guess) {
 /// result is kUnclear.
 Values values_beside(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                      const std::vector<SheetColumn>& columns, std::size_t position, std::size_t reading) {
-  const auto from = format::find_unit(columns[position].unit), to = format::find_unit(columns[reading].unit);
-  if (!from || !to || columns[position].unit.empty() || columns[reading].unit.empty() ||
-      from->dimension != to->dimension)
+  // Two columns without a unit have the same one if their values agree.
+  const bool no_units = columns[position].unit.empty() && columns[reading].unit.empty();
+  const std::string one = no_units ? "mm" : columns[position].unit,
+                    other = no_units ? "mm" : columns[reading].unit;
+  const auto from = format::find_unit(one), to = format::find_unit(other);
+  if (!from || !to || one.empty() || other.empty() || from->dimension != to->dimension)
     return Values::kUnclear;
   std::vector<double> at, value, size, apart, sum, step;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
@@ -60,12 +66,115 @@ Values values_beside(const sheet::Sheet& sheet, const sheet::SheetTable& table,
   // No machine has errors of a twentieth of its travel (kImplausibleShare in deviation_sizes.cpp).
   constexpr double kShare = 0.05;
   if (!(travel > 0)) return Values::kUnclear;
-  if (*std::max_element(size.begin(), size.end()) < kShare * travel) return Values::kDeviations;
+  if (no_units && !(maths::median(apart) < kShare * travel)) return Values::kUnclear;
+  if (!no_units && *std::max_element(size.begin(), size.end()) < kShare * travel) return Values::kDeviations;
   if (maths::median(apart) < kShare * travel) return Values::kPositions;
   if (maths::median(sum) < kShare * travel) return Values::kOpposite;
   // The steps are a part of the travel: they agree within a twentieth of themselves.
   if (maths::median(step) < kShare * maths::median(size)) return Values::kSteps;
   return Values::kUnclear;
+}
+
+/// Does a column without a unit count the runs: the numbers 1 to n, each in several rows, in ascending
+/// blocks?
+bool counts_runs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                 const std::vector<SheetColumn>& columns, std::size_t k) {
+  if (!columns[k].unit.empty()) return false;
+  std::vector<double> values;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto value = sheet::number_at(sheet, row, k);
+    if (!value) continue;
+    const bool next = values.empty() ? *value == 1 : *value == values.back() || *value == values.back() + 1;
+    if (!next || sheet::decimals_of(sheet.rows[row][k], sheet.decimal_comma) > 0) return false;
+    values.push_back(*value);
+  }
+  return !values.empty() && 2 * values.back() <= static_cast<double>(values.size());
+}
+
+/// True for a word of a deviation, also inside a word and in languages whose texts about the sign are not
+/// read: such a column is proposed, and read only if the user says so.
+bool may_name_deviation(const sheet::Heading& heading) {
+  constexpr std::array<std::string_view, 14> kParts = {
+      "abweich",      "fehler",      "deviat", "error", "ecart", "scosta",
+      "odchy",        "afwijk",      "avvik",  "afvig", "desvi", "\u043e\u0442\u043a\u043b\u043e",
+      "\u8bef\u5dee", "\u504f\u5dee"};
+  const std::string small = text::in_small_letters(heading.name);
+  return std::any_of(kParts.begin(), kParts.end(),
+                     [&](std::string_view part) { return small.find(part) != std::string::npos; });
+}
+
+/// True for the sum of all deviations up to a position, beside the single ones.
+bool names_accumulated(const sheet::Heading& heading) {
+  const std::string small = text::in_small_letters(heading.name);
+  return small.starts_with("summen") || small.starts_with("kumul") || small.starts_with("cumul") ||
+         small.starts_with("accum");
+}
+
+/// True for a sum of several measurements, which is no reading.
+bool names_sum(const sheet::Heading& heading) {
+  const std::vector<std::string> words = heading_words(heading.name);
+  return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+    const std::string small = text::in_small_letters(word);
+    return small == "summe" || small == "sum" || small == "total";
+  });
+}
+
+/// Range and largest size of a column, in the base unit of its heading.
+struct Extent {
+  double range = 0, size = 0;
+};
+
+Extent extent_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t k) {
+  const std::string& unit = table.headings[k].unit;
+  const auto known = unit.empty() ? std::nullopt : format::find_unit(unit);
+  const double factor = known ? known->factor : 1;
+  std::optional<double> least, most;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+    if (const auto value = sheet::number_at(sheet, row, k)) {
+      least = std::min(least.value_or(*value), *value);
+      most = std::max(most.value_or(*value), *value);
+    }
+  if (!least) return {};
+  return {(*most - *least) * factor, std::max(std::abs(*least), std::abs(*most)) * factor};
+}
+
+/// The axis whose letter the heading has, also without a blank before it; empty: none.
+std::string axis_in(const sheet::Heading& heading, const Guess& guess) {
+  for (const std::string& word : heading_words(heading.name))
+    if (guess.is_axis(word)) return word;
+  return "";
+}
+
+/// Target and deviation by their values, for headings in a language that is not read: the deviations are
+/// below a twentieth of the range of the targets. nullopt: no two candidates are like this.
+std::optional<std::pair<std::size_t, std::size_t>> target_and_deviation(
+    const sheet::Sheet& sheet, const sheet::SheetTable& table, const std::vector<std::size_t>& candidates) {
+  constexpr double kShare = 0.05;
+  std::optional<std::size_t> target, deviation;
+  for (const std::size_t k : candidates)
+    if (!may_name_deviation(table.headings[k]) &&
+        (!target || extent_of(sheet, table, k).range > extent_of(sheet, table, *target).range))
+      target = k;
+  if (!target) return std::nullopt;
+  for (const std::size_t k : candidates) {
+    if (k == *target || !(extent_of(sheet, table, k).size < kShare * extent_of(sheet, table, *target).range))
+      continue;
+    if (!deviation ||
+        (may_name_deviation(table.headings[k]) && !may_name_deviation(table.headings[*deviation])))
+      deviation = k;
+  }
+  return deviation ? std::optional(std::pair(*target, *deviation)) : std::nullopt;
+}
+
+/// A column with a word for a deviation that is left out because its name is that of another column: the
+/// letters of its heading are not all read.
+std::optional<std::size_t> deviation_of_same_name(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                                  const std::vector<SheetColumn>& columns) {
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (columns[k].use == SheetColumn::Use::kLeft && columns[k].why.starts_with("column ") &&
+        may_name_deviation(table.headings[k]) && sheet::number_at(sheet, table.first_data, k))
+      return k;
+  return std::nullopt;
 }
 
 /// Does a heading only count or name its rows?
@@ -147,6 +256,31 @@ std::string point_of_robot(const sheet::SheetTable& table, const std::vector<She
              : "";
 }
 
+/// Options for distances between named points ("Abstand [mm]" beside "von"); empty: the table has no such
+/// pair.
+std::string distances_between_points(const sheet::SheetTable& table,
+                                     const std::vector<SheetColumn>& columns) {
+  const auto has_word = [&](std::size_t k, std::initializer_list<std::string_view> known) {
+    const std::vector<std::string> words = heading_words(table.headings[k].name);
+    return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+      return std::find(known.begin(), known.end(), text::in_small_letters(word)) != known.end();
+    });
+  };
+  std::optional<std::size_t> distance, from;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k].use != SheetColumn::Use::kColumn) continue;
+    if (!columns[k].words && has_word(k, {"abstand", "distanz", "entfernung", "distance", "dist", "strecke",
+                                          "länge", "diagonale", "diagonal"}))
+      distance = k;
+    if (columns[k].words && has_word(k, {"von", "from", "ab", "de", "da", "start", "bezug"})) from = k;
+  }
+  if (!distance || !from) return "";
+  return fmt::format(
+      "--column \"distance{}={}\" --column \"from={}\" (distances between points of the table)",
+      table.headings[*distance].unit.empty() ? "[mm]" : "", table.headings[*distance].text,
+      table.headings[*from].text);
+}
+
 /// True if the angles of a table are the joints of a robot: three or more of them beside a length.
 bool angles_are_joints(const std::vector<SheetColumn>& columns) {
   constexpr std::ptrdiff_t kFewestJoints = 3;
@@ -166,6 +300,7 @@ bool angles_are_joints(const std::vector<SheetColumn>& columns) {
 std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                const std::vector<SheetColumn>& columns, const Guess& guess) {
   if (std::string robot = point_of_robot(table, columns, guess); !robot.empty()) return robot;
+  if (std::string distances = distances_between_points(table, columns); !distances.empty()) return distances;
   const auto axis = std::find_if(columns.begin(), columns.end(), [&](const SheetColumn& column) {
     return column.use == SheetColumn::Use::kColumn && guess.is_axis(column.name);
   });
@@ -180,13 +315,16 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
   };
   const bool joints = angles_are_joints(columns);
   const bool shown = !has(Guess::Bare::kTarget) && has(Guess::Bare::kActual);
+  std::vector<std::size_t> candidates;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name) ||
         guess.is_motion(column.name) || is_sense(column.name) || is_known_name(column.name) ||
         names_counting(table.headings[k]) || counts_rows(sheet, table, k) ||
+        counts_runs(sheet, table, columns, k) || names_sum(table.headings[k]) ||
         (joints && is_angle(column.unit)))
       continue;
+    candidates.push_back(k);
     Guess::Bare bare = Guess::bare(table.headings[k].name);
     if (bare == Guess::Bare::kDisplay && shown) bare = Guess::Bare::kTarget;
     const std::string shown_axis = axis_shown(table.headings[k], guess);
@@ -201,7 +339,11 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
       at_position = k;
       position = fmt::format("--column \"{}{}={}\" ", name, column.unit.empty() ? "[mm]" : "",
                              table.headings[k].text);
-    } else if (reading.empty() || (bare == Guess::Bare::kActual && !actual)) {
+    } else if (reading.empty() || (bare == Guess::Bare::kActual && !actual) ||
+               (!actual && may_name_deviation(table.headings[k]) &&
+                (!may_name_deviation(table.headings[*at_reading]) ||
+                 (names_accumulated(table.headings[k]) &&
+                  !names_accumulated(table.headings[*at_reading]))))) {
       at_reading = k;
       reading = table.headings[k].text;
       unit = column.unit;
@@ -209,6 +351,17 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
       correction = names_correction(table.headings[k]);
     }
   }
+  if (axis == columns.end() && position.empty() && !actual)
+    if (const auto pair = target_and_deviation(sheet, table, candidates)) {
+      const sheet::Heading &target = table.headings[pair->first], &deviation = table.headings[pair->second];
+      if (const std::string found = axis_in(target, guess); !found.empty()) name = found;
+      const bool examples = target.unit.empty() || deviation.unit.empty();
+      return fmt::format(
+          "--column \"{0}{1}={2}\" --deviation \"{0}{3}={4}\" (the values of the second column are small "
+          "compared with those of the first one: deviations){5}",
+          name, target.unit.empty() ? "[mm]" : "", target.text, deviation.unit.empty() ? "[um]" : "",
+          deviation.text, examples ? "; [mm] and [um] are examples: state the unit of the values" : "");
+    }
   const auto open = std::find_if(columns.begin(), columns.end(), [](const SheetColumn& column) {
     return column.use == SheetColumn::Use::kLeft && column.name.empty() &&
            column.why.find("the axis of this deviation is not known") == 0;
@@ -228,8 +381,17 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
                                                  at != std::string::npos &&
                                                  !column.why.starts_with("column "))
         return column.why.substr(at);
-  if (reading.empty()) reading = "HEADING";
-  const std::string which = unit.empty() ? "; [mm] and [um] are examples: state the unit of the values" : "";
+  if (reading.empty())
+    if (const auto other = deviation_of_same_name(sheet, table, columns))
+      return fmt::format("--deviation \"{}{}={}\"", name, table.headings[*other].unit.empty() ? "[um]" : "",
+                         table.headings[*other].text);
+  const bool open_heading = reading.empty();
+  if (open_heading) reading = "HEADING";
+  std::string which = unit.empty() ? "; [mm] and [um] are examples: state the unit of the values" : "";
+  if (open_heading)
+    which =
+        ", with a heading of the table in the place of HEADING" + which +
+        " (no column looks like a reading; a sum of several measurements must be divided by their number)";
   if (correction)
     return fmt::format("{}--deviation \"{}{}={}\" (a correction is nominal - actual: its sign is reversed){}",
                        position, name, unit.empty() ? "[um]" : "", reading, which);

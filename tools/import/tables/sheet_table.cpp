@@ -284,6 +284,43 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
                   one ? fmt::format("all (--unit {}) or for ", *units.begin()) : "", without, doubt));
 }
 
+/// Refuses a column that was left out because its cells are no numbers, although its heading says what it is:
+/// names the first cell that cannot be read. `is_wanted`: true for the column that is missing.
+template <typename Test>
+void refuse_unreadable(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                       const std::vector<SheetColumn>& columns, const Test& is_wanted) {
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k].use != SheetColumn::Use::kLeft || columns[k].why != "no numbers" || !is_wanted(k))
+      continue;
+    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+      const std::string& cell = sheet.rows[row][k];
+      if (is_missing(cell) || sheet::plain_number(cell, sheet.decimal_comma)) continue;
+      throw text::InputError({sheet.file, sheet.line[row]}, cell,
+                             fmt::format("this cell of \"{}\" is not a plain number: write the cells of this "
+                                         "column as numbers such as 100{}5, without words and with the unit "
+                                         "in the heading",
+                                         table.headings[k].text, sheet.decimal_comma ? "," : "."));
+    }
+  }
+}
+
+/// Refuses a table whose headings are the positions: each row is a run.
+void refuse_positions_in_headings(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  constexpr std::size_t kFewest = 3;  // fewer numbers may be names of columns
+  std::size_t numbers = 0;
+  std::string first;
+  for (const sheet::Heading& heading : table.headings)
+    if (!heading.unit.empty() && sheet::plain_number(heading.name, sheet.decimal_comma)) {
+      if (++numbers == 1) first = heading.text;
+    }
+  if (numbers < kFewest || !table.has_headings) return;
+  throw text::InputError(
+      {sheet.file, sheet.line[table.heading_row]}, first,
+      "the headings of the columns are positions, so that each row is a run: transpose the table in the "
+      "spreadsheet program (copy, paste special, transpose), with one row for each position, and write what "
+      "each row and column is into its heading (Soll X [mm]; Run 1 + [um])");
+}
+
 /// The headings of readings whose cells are all empty: a template that was not filled in.
 std::string empty_readings(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns) {
   std::vector<std::string> found;
@@ -323,7 +360,9 @@ std::string cell_text(const sheet::Sheet& sheet, const SheetColumn& column, cons
     throw text::InputError(
         place, cell,
         fmt::format("not an approach direction, for {}: write + or -, forward or backward, "
-                    "hin or zurück; + is the direction of increasing positions",
+                    "hin or zurück; + is the direction of increasing positions. If the rows are in the order "
+                    "of the measurement, give --leave with the heading of this column, and --directions "
+                    "from-order",
                     column.name));
   if (sheet::is_date(cell))
     throw text::InputError(place, cell,
@@ -380,6 +419,14 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
         fmt::format("no column of the table is a reading{}; --preview shows the meaning of "
                     "each column",
                     runs));
+  if (!measured) {
+    refuse_positions_in_headings(sheet, table);
+    refuse_unreadable(sheet, table, columns, [&](std::size_t k) {
+      const SheetColumn column = guess.column(table.headings[k]);
+      return column.use == SheetColumn::Use::kDeviation || column.name == "x" || column.name == "y" ||
+             column.name == "z";
+    });
+  }
   if (!measured)
     throw text::InputError(
         heading, "",
@@ -437,6 +484,13 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
                                                                         : "";
     const double sign = column.turned != column.to_target ? -1 : 1;
     if (column.to_target) made.name = column.name;
+    if (deviation && !moves && still == wishes.constants.end())
+      refuse_unreadable(sheet, table, columns, [&](std::size_t at) {
+        const std::vector<std::string> words = heading_words(table.headings[at].name);
+        return guess.column(table.headings[at]).name == beside ||
+               std::any_of(words.begin(), words.end(),
+                           [](const std::string& word) { return says_target(text::in_small_letters(word)); });
+      });
     if (deviation && !moves && still == wishes.constants.end())
       throw text::InputError(
           heading, column.name,

@@ -99,11 +99,11 @@ const WordSet kStatisticWords = {
     "moyenne", "écart-type", "mittelwerts", "umkehrspanne", "umkehrspannen", "umkehrfehler", "umkehrspiel",
     // Signs of a mean and of a standard deviation; Ø has no small letter here.
     "x\u0304", "x\u0305", "ø", "Ø", "⌀", "∅", "σ", "2σ", "3σ"};
-const WordSet kForthWords = {"1",      "+1",       "+",          "forward", "fwd",     "forth",
-                             "up",     "pos",      "positive",   "positiv", "vor",     "vorwärts",
-                             "hin",    "auf",      "plus",       "cw",      "aller",   "\u2191",
-                             "\u2192", "hinfahrt", "hinweg",     "andata",  "vorlauf", "ida",
-                             "heen",   "tam",      "prz\u00f3d", "fram",    "frem",    "\u6b63\u5411"};
+const WordSet kForthWords = {
+    "1",        "+1",      "+",          "forward",  "fwd",    "forth",        "up",      "pos",
+    "positive", "positiv", "vor",        "vorwärts", "hin",    "auf",          "plus",    "cw",
+    "aller",    "\u2191",  "\u2192",     "hinfahrt", "hinweg", "andata",       "vorlauf", "ida",
+    "heen",     "tam",     "prz\u00f3d", "fram",     "frem",   "\u6b63\u5411", "avanti"};
 const WordSet kBackWords = {"-1",
                             "-",
                             "backward",
@@ -141,6 +141,7 @@ const WordSet kBackWords = {"-1",
                             "tillbaka",
                             "tilbake",
                             "tilbage",
+                            "indietro",
                             "\u53cd\u5411",
                             "minus",
                             "ccw",
@@ -154,13 +155,13 @@ const WordSet kRunWords = {"lauf",  "run",     "messlauf", "messreihe", "messung
                            "pass",  "passage", "zyklus",   "cycle",     "measurement", "fahrt",
                            "serie", "series",  "reihe",    "corsa",     "ciclo"};
 const WordSet kWayWords = {
-    "hin",       "her",        "zurück",       "zur",         "zurueck",    "vor",      "rück",
-    "rueck",     "forward",    "fwd",          "forth",       "back",       "backward", "backwards",
-    "bwd",       "hinfahrt",   "hinweg",       "rückfahrt",   "rueckfahrt", "rückweg",  "vorwärts",
-    "rückwärts", "aller",      "retour",       "andata",      "ritorno",    "vorlauf",  "r\u00fccklauf",
-    "ruecklauf", "ida",        "vuelta",       "volta",       "heen",       "terug",    "tam",
-    "zp\u011bt", "prz\u00f3d", "ty\u0142",     "powr\u00f3t", "fram",       "tillbaka", "tilbake",
-    "frem",      "tilbage",    "\u6b63\u5411", "\u53cd\u5411"};
+    "hin",       "her",        "zurück",       "zur",          "zurueck",    "vor",      "rück",
+    "rueck",     "forward",    "fwd",          "forth",        "back",       "backward", "backwards",
+    "bwd",       "hinfahrt",   "hinweg",       "rückfahrt",    "rueckfahrt", "rückweg",  "vorwärts",
+    "rückwärts", "aller",      "retour",       "andata",       "ritorno",    "vorlauf",  "r\u00fccklauf",
+    "ruecklauf", "ida",        "vuelta",       "volta",        "heen",       "terug",    "tam",
+    "zp\u011bt", "prz\u00f3d", "ty\u0142",     "powr\u00f3t",  "fram",       "tillbaka", "tilbake",
+    "frem",      "tilbage",    "\u6b63\u5411", "\u53cd\u5411", "avanti",     "indietro"};
 /// Words of an axis beside its letter.
 const WordSet kAxisWords = {"axis", "achse", "axe", "asse", "eje", "eixo", "osa", "o\u015b", "axel", "akse"};
 
