@@ -98,8 +98,11 @@ model::Machine tooled(const model::Machine& machine, const std::string& tool) {
 
 std::vector<double> number_list(const std::string& text, const std::vector<std::size_t>& counts,
                                 const std::string& what) {
+  // A list in a field of the workbench has "; " between two values.
+  std::string list = text;
+  std::replace(list.begin(), list.end(), ';', ',');
   std::vector<double> result;
-  for (const std::string& word : text::parts_of(text, ',')) {
+  for (const std::string& word : text::parts_of(list, ',')) {
     const auto number = text::parse_number(word);
     if (!number) throw text::InputError({}, word, "not a number, in " + what);
     result.push_back(*number);

@@ -574,6 +574,33 @@ async function looks(page) {
   assert.ok(!(await text(page, '#sheet-message')).includes('--'), await text(page, '#sheet-message'));
   await page.click('[data-confirms="Abw. X [mm]"]');
   await page.until("!document.getElementById('sheet-message') && !document.getElementById('do-import').disabled", 'the confirmed table');
+  // A name with its unit, as messages write it; a wrong unit leaves the columns, so that it can be corrected.
+  await page.drop([{ name: 'bare.csv', text: 'A1;X [mm]\n10,1;0\n20,2;100\n30,3;200\n' }]);
+  await page.until("document.querySelectorAll('#sheet-columns tbody tr').length === 2", 'its columns');
+  const cell = (label) => `#sheet-columns tbody tr:nth-child(1) input[aria-label^="${label}"]`;
+  const enter = async (label, word) => {
+    await page.type(cell(label), word);
+    await page.evaluate(`document.querySelector(${JSON.stringify(cell(label))}).dispatchEvent(new Event('change', { bubbles: true }))`);
+  };
+  await enter('unit', 'foo');
+  await words(page, '#import-box', 'unknown unit');
+  assert.equal(await page.evaluate("document.querySelectorAll('#sheet-columns tbody tr').length"), 2, 'the columns stay');
+  await enter('name', 'x[mm]');
+  await page.until("document.querySelector('#import-box pre')?.textContent.includes('x[mm],X[mm]')", 'the name and its unit');
+  // What cannot be read at all has its buttons too.
+  await page.drop([{ name: 'words.csv', text: 'AC = eins\nBD = zwei\n' }]);
+  await words(page, '#import-box', 'words.csv');
+  assert.deepEqual(await page.evaluate("[...document.querySelectorAll('#import-box button')].map((one) => one.textContent)"), [
+    'Import',
+    'Not now',
+  ]);
+  // A table of another instrument beside a table: what is said of both stays.
+  await page.drop([
+    { name: 'one.csv', text: 'X soll [mm];Abweichung X [um]\n0,0;1,5\n100,0;2,5\n200,0;4,0\n' },
+    { name: 'two.csv', text: 'X soll [mm];Abweichung X [um]\n0,0;1,5\n100,0;2,5\n200,0;4,0\n' },
+  ]);
+  await words(page, '#import-box', 'two.csv: ');
+  await words(page, '#import-box', 'one.csv: ');
   // The name of the folder is whole.
   assert.ok(
     await page.evaluate("(() => { const one = document.querySelector('.folder'); return one.scrollWidth <= one.clientWidth; })()"),

@@ -115,13 +115,13 @@ double largest_of(const importer::SheetReading& reading, const std::string& head
 /// them the measured point in mm. Empty without all three.
 std::vector<std::string> point_without_units(const importer::SheetReading& reading) {
   std::vector<std::string> words;
-  for (const char* const name : {"x", "y", "z"})
+  for (const char* const axis : {"X", "Y", "Z"})
     for (std::size_t k = 0; k < reading.columns.size(); ++k) {
       const sheet::Heading& heading = reading.table.headings[k];
-      if (text::in_small_letters(heading.name) != name || !heading.unit.empty() ||
+      if (text::in_small_letters(heading.name) != importer::reading_of(axis) || !heading.unit.empty() ||
           reading.columns[k].why != "by its heading")
         continue;
-      words.push_back(fmt::format("{}[mm]={}", name, heading.text));
+      words.push_back(fmt::format("{}[mm]={}", *importer::reading_of(axis), heading.text));
       break;
     }
   constexpr std::size_t kCoordinates = 3;

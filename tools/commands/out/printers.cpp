@@ -414,11 +414,11 @@ void add_printer(CLI::App* parent, const char* name, const char* what, const cha
 
 void add_printer_exports(CLI::App* parent) {
   constexpr const char* kSteps =
-      "present steps per mm of X, Y and Z; without this option the scale is not corrected";
-  add_printer(
-      parent, "klipper", "Klipper: skew_correction, bed_mesh and rotation_distance",
-      "present rotation_distance of X, Y and Z, mm per turn; without this option the scale is not corrected",
-      Firmware::kKlipper);
+      "present steps per mm of X, Y and Z; form 40,40,8; without this option the scale is not corrected";
+  add_printer(parent, "klipper", "Klipper: skew_correction, bed_mesh and rotation_distance",
+              "present rotation_distance of X, Y and Z, mm per turn; form 40,40,8; without this option the "
+              "scale is not corrected",
+              Firmware::kKlipper);
   add_printer(parent, "rrf", "RepRapFirmware: M556, height map, M92 and M425", kSteps, Firmware::kRepRap);
   add_printer(parent, "marlin", "Marlin: M852, M421, M92 and M425", kSteps, Firmware::kMarlin);
   add_printer(parent, "grbl", "grbl: steps per mm ($100 to $102), the only correction that grbl can store",

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-#include <functional>
 #include <string>
 #include <vector>
-
-#include "tools/import/columns/column_map.h"
 
 namespace vernier::importer {
 
@@ -19,11 +16,5 @@ std::vector<int> directions_by_motion(const std::vector<double>& positions,
 /// run. A change of at most `still` is no motion: an axis at rest is displayed with its last digits changing.
 std::vector<int> directions_of_last_motion(const std::vector<double>& positions,
                                            const std::vector<std::string>& runs, double still);
-
-/// Adds the approach direction (dirX) of each axis of the table that has none, by the order of the rows
-/// (directions_of_last_motion). Rows of one run and set-up are a sequence of motions. Returns the names of
-/// the columns that were added. Throws InputError if no axis of the table moves.
-std::vector<std::string> add_directions_from_order(ImportTable& table,
-                                                   const std::function<bool(const std::string&)>& is_axis);
 
 }  // namespace vernier::importer

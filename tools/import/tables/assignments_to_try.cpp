@@ -149,7 +149,7 @@ std::string axis_in(const sheet::Heading& heading, const Guess& guess) {
 /// below a twentieth of the range of the targets. nullopt: no two candidates are like this.
 std::optional<std::pair<std::size_t, std::size_t>> target_and_deviation(
     const sheet::Sheet& sheet, const sheet::SheetTable& table, const std::vector<std::size_t>& candidates) {
-  constexpr double kShare = 0.05;
+  constexpr double kShare = 0.05;  // no machine has errors of a twentieth of its travel
   std::optional<std::size_t> target, deviation;
   for (const std::size_t k : candidates)
     if (!may_name_deviation(table.headings[k]) &&

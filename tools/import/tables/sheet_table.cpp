@@ -13,8 +13,8 @@
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/columns/column_values.h"
 #include "tools/import/columns/sheet_columns.h"
-#include "tools/import/order/motion_directions.h"
 #include "tools/import/tables/assignments_to_try.h"
+#include "tools/import/tables/order_directions.h"
 #include "tools/import/tables/run_pairs.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/dates.h"
@@ -423,8 +423,8 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
     refuse_positions_in_headings(sheet, table);
     refuse_unreadable(sheet, table, columns, [&](std::size_t k) {
       const SheetColumn column = guess.column(table.headings[k]);
-      return column.use == SheetColumn::Use::kDeviation || column.name == "x" || column.name == "y" ||
-             column.name == "z";
+      return column.use == SheetColumn::Use::kDeviation ||
+             (!column.name.empty() && format::find_column(column.name) != nullptr && wants_unit(column));
     });
   }
   if (!measured)

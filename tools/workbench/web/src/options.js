@@ -8,6 +8,9 @@ export const option = (command, name) => store.commands.find((one) => one.name =
 /** The name of an option as its field has it. */
 export const fieldName = (name) => name.replaceAll('-', ' ');
 
+/** The form of a value that is several numbers, as the help of its option states it: " (40,40,8)". */
+const formOf = (one) => one.help.match(/form( [-\d.,]+)[;)]/)?.[1].replace(/ (.*)/, ' ($1)') ?? '';
+
 /** An input for an option. Its `value()` is that of a request; undefined: not given. */
 function input(one) {
   const common = { 'data-option': one.name, 'aria-label': one.name, title: one.help };
@@ -83,7 +86,7 @@ export function optionFields(command, given, change = () => {}) {
         label: el(
           one.list && one.words ? 'div' : 'label',
           { class: 'choice', title: one.help },
-          `${fieldName(name)}${one.list && !one.words ? ' (; between two)' : ''} `,
+          `${fieldName(name)}${one.list && !one.words ? ' (; between two)' : formOf(one)} `,
           node,
         ),
       };

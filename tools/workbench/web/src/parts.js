@@ -48,19 +48,25 @@ export const programWords = (words) =>
       ' under Project: press "read differently" beside the file, and choose "from-order" in the field "directions"',
     )
     .replace(
-      / \(import table --set "([^"]+)"\)/g,
+      / \(import table:? --set "([^"]+)"\)/g,
       ' under Project: press "read differently" beside the file, and write $1 into the field "set"',
-    );
+    )
+    .replace(
+      /fit --hold NAME, such as --hold "([^"]+)"/g,
+      'fit again under Parameters with NAME, such as $1, in the field "hold" of the options of fit',
+    )
+    .replace(/fit --hold "([^"]+)"/g, 'fit again under Parameters with $1 in the field "hold" of the options of fit');
 
 /** A message of a command in the words of the page: an option that has a field is called by the field. `typed`: the command. */
-export function pageWords(message, typed) {
+export function pageWords(said, typed) {
+  const message = programWords(said);
   const command = store.commands
     .filter((one) => `${typed ?? ''} `.startsWith(`vernier ${one.name} `))
     .sort((a, b) => b.name.length - a.name.length)[0];
   // A whole command is for the terminal.
-  if (!command || /\bvernier [a-z]/.test(message.replace(kTool, ''))) return message.replace(kTool, toolWords);
+  if (!command || /\bvernier [a-z]/.test(message)) return message;
   const has = (name) => command.options.some((one) => one.name === name);
-  const accepted = message.replace(kTool, toolWords).replace(/;((?: --accept [\w-]+)+) overrides\s*$/, (whole, list) =>
+  const accepted = message.replace(/;((?: --accept [\w-]+)+) overrides\s*$/, (whole, list) =>
     has('accept')
       ? `. If you accept this, mark ${list
           .trim()

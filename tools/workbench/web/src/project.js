@@ -37,7 +37,13 @@ async function importFile(name, kind, box, repair, beside = []) {
     await run({ command: `import ${importer}`, ...fields, output });
     return done(output);
   }
-  return importSheet(box, name, (outputs) => choose(store.machine, [...beside, ...outputs]));
+  // Later sheets, and a sheet that is read differently, come beside what was chosen in the meantime.
+  let made = null;
+  return importSheet(box, name, (outputs) => {
+    const others = made ? store.measurements.filter((one) => !made.includes(one) && !outputs.includes(one)) : beside;
+    made = outputs;
+    return choose(store.machine, [...others, ...outputs]);
+  });
 }
 
 /** Asks in a box, with a button for each answer [label, value]; the first answer is the usual one. */
@@ -277,12 +283,16 @@ export function projectView(root) {
   const takeAll = async (files) => {
     error.replaceChildren();
     notes.replaceChildren();
+    box.replaceChildren();
     // Measurements of one drop belong together: two instruments at one machine.
     const before = new Set(store.measurements);
     for (const file of files) {
       try {
         const beside = store.measurements.filter((name) => !before.has(name));
-        await take(file, { repair: repair.values(), box, beside, ask: error, notes });
+        // Each file has a box of its own: the sheets and notes of a workbook stay beside those of the next file.
+        const own = el('div', {});
+        box.prepend(own);
+        await take(file, { repair: repair.values(), box: own, beside, ask: error, notes });
       } catch (why) {
         await showBadLine(error, file, why.message);
         return;

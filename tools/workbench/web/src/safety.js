@@ -92,7 +92,9 @@ export function safetyPanel() {
       ? `What is known holds; ${unknown.length} of ${sheet.rules.length} rules cannot be evaluated: ${reasonOf(unknown)}`
       : 'Every rule holds.';
     const refusal = sheet ? pageWords(sheet.refusal, 'vernier compile') : '';
-    words.textContent = sheet ? (sheet.ok ? holds : refusal.replace(/^n/, 'N')) : '';
+    // The heading is the rule that does not hold; what to do about it is a text below the heading.
+    const [rule, ...remedy] = (sheet ? (sheet.ok ? holds : refusal.replace(/^n/, 'N')) : '').split(/(?<=;) /);
+    words.replaceChildren(rule, ...(remedy.length ? [' ', el('span', { class: 'remedy' }, remedy.join(' '))] : []));
     words.classList.toggle('error', Boolean(sheet) && !sheet.ok);
     words.dataset.ok = sheet ? sheet.ok : '';
     box.replaceChildren(...(sheet ? [safetyTable(sheet.rules)] : []));

@@ -83,7 +83,14 @@ function columnRow(column, k, preview, change) {
   };
   const name = input(column.name, 'name', 8),
     unit = input(column.unit, 'unit', 5);
-  const tell = () => change(k, { use: use.querySelector('select').value, name: name.value.trim(), unit: unit.value.trim() });
+  const tell = () => {
+    // "x[mm]" in the field of the name, as messages write it, is a name and its unit.
+    const both = name.value.match(/^\s*([^[\]]*?)\s*\[([^\]]*)\]\s*$/);
+    if (both) {
+      [, name.value, unit.value] = both;
+    }
+    change(k, { use: use.querySelector('select').value, name: name.value.trim(), unit: unit.value.trim() });
+  };
   return el(
     'tr',
     { 'data-column': column.name },
@@ -203,6 +210,13 @@ export async function importSheet(box, name, done, asks = false) {
     node.querySelector('select').id = 'sheet-of-workbook';
     return node;
   };
+  const later = () => button('Not now', () => box.replaceChildren(), { class: 'quiet' });
+  /** The button of an import that cannot be done yet, with the reason. */
+  const notYet = () => {
+    const go = button('Import', () => {}, { id: 'do-import' });
+    gate(go, 'The table cannot be read yet: the message above says why');
+    return go;
+  };
   let read = null; // the last preview that could be read
   // What cannot be read at all may be read with other options: another line, table or sheet.
   const refused = () =>
@@ -211,6 +225,7 @@ export async function importSheet(box, name, done, asks = false) {
         `What is in ${name}?`,
         error,
         el('div', { class: 'controls' }, read?.sheets.length > 1 ? sheets({ ...read, sheet }) : null, forms.table.elements),
+        el('div', { class: 'controls' }, notYet(), later()),
       ),
     );
   async function draw(preview = null) {
@@ -218,7 +233,8 @@ export async function importSheet(box, name, done, asks = false) {
     error.replaceChildren();
     const now = preview ?? (await guarded(error, ask));
     if (mine !== turn) return null; // asked anew in the meantime
-    if (!now) return refused();
+    // A wrong word in a field of the table: the table stays, so that the word can be corrected.
+    if (!now) return box.querySelector('#sheet-columns') ? null : refused();
     read = now;
     kind ??= likely(now);
     const go = button('Import', () => doImport(now), { id: 'do-import' });
@@ -268,12 +284,7 @@ export async function importSheet(box, name, done, asks = false) {
           ),
         ),
         now.csv.length ? el('pre', { class: 'source', 'aria-label': 'first rows of the measurement file' }, now.csv.join('\n')) : null,
-        el(
-          'div',
-          { class: 'controls' },
-          go,
-          button('Not now', () => box.replaceChildren(), { class: 'quiet' }),
-        ),
+        el('div', { class: 'controls' }, go, later()),
         error,
       ),
     );
