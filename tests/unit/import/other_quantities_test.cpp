@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include <string>
+#include <utility>
 
 #include "tests/unit/import/table_reading.h"
 
@@ -100,6 +101,19 @@ TEST(Proposals, AreADeviationAndNotARunOrATarget) {
   EXPECT_THAT(
       read("Soll X [mm];Einzelabweichung X [um];Summenabweichung X [um]\n0;1;1\n50;2;3\n100;3;6\n150;1;7\n"),
       HasSubstr("--deviation \"X=Summenabweichung X [um]\""));
+}
+
+TEST(Proposals, HeadingsInAnotherEncodingAreNoted) {
+  const std::string rows = ";B\n0;1,5\n100;2,5\n200;1,0\n";
+  // "Цель" in Windows-1251, and "Länge" in Windows-1252.
+  for (const auto& [heading, noted] :
+       {std::pair("\xD6\xE5\xEB\xFC X [mm]", true), std::pair("L\xE4nge X [mm]", false)}) {
+    const SheetReading reading = read_as_sheet(heading + rows, "s.csv", {});
+    bool found = false;
+    for (const std::string& note : reading.sheet.notes)
+      found |= note.find("Windows-1252") != std::string::npos;
+    EXPECT_EQ(found, noted) << heading;
+  }
 }
 
 TEST(Proposals, DistancesBetweenPointsAreNamed) {

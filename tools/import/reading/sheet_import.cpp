@@ -35,6 +35,7 @@
 #include "tools/import/tables/table_shape.h"
 #include "tools/import/tables/thousands.h"
 #include "tools/import/tables/wide_sheet.h"
+#include "tools/import/words/foreign_letters.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
 #include "tools/import/words/title_units.h"
@@ -310,6 +311,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   const std::vector<RunLine> run_lines = take_run_lines(result.sheet);
   result.table = sheet::parts_of_sheet(result.sheet);
   add_run_lines(result.sheet, result.table, run_lines);
+  note_foreign_letters(result.sheet, result.table);
   state_degrees(result.table, degrees);
   refuse_transposed(result.sheet, result.table);
   leave_words_below(result.sheet, result.table);
