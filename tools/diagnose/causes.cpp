@@ -36,6 +36,9 @@ class Causes {
   std::vector<Cause> all(const std::vector<double>& aliases) const {
     const double own = found_.finder.evidence_for(first_);
     std::vector<Cause> causes = {entry(first_, pool_[first_].scored.scanned, own)};
+    // One cause: FORMATS counts equal columns as no ambiguity.
+    for (const std::string& name : of_other_axes(found_, position_))
+      causes.front().description += fmt::format(", or {} with the opposite sign", name);
     for (const double alias : aliases)
       causes.push_back(entry(first_, {alias}, found_.finder.evidence_for(first_, {alias})));
     const std::vector<std::size_t> close = found_.close(position_);
@@ -83,6 +86,21 @@ std::vector<double> aliases_of(const Diagnosis& answer) {
 }
 
 }  // namespace
+
+std::vector<std::string> of_other_axes(const Findings& found, std::size_t position) {
+  if (position >= found.alternatives.size()) return {};
+  const Pool& pool = found.finder.pool();
+  const std::vector<std::size_t>& same = found.alternatives[position].same;
+  const effects::Choice& own = pool.candidate(found.accepted[position]).choice;
+  const auto is_pair = [&](std::size_t item) { return pool.candidate(item).choice.axis2.has_value(); };
+  std::vector<std::string> names;
+  if (!own.axis || own.axis2 || std::none_of(same.begin(), same.end(), is_pair)) return names;
+  for (const std::size_t item : same)
+    if (const effects::Choice& other = pool.candidate(item).choice;
+        other.effect == own.effect && other.form == own.form && other.axis != own.axis && !other.axis2)
+      names.push_back(pool.candidate(item).spoken);
+  return names;
+}
 
 Cause instrument_cause(const std::string& kind, double evidence) {
   Cause cause;

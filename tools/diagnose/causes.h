@@ -25,4 +25,8 @@ std::vector<Cause> causes_of_step(const Findings& found, std::size_t position);
 /// Returns the error of the instrument as a cause. `kind`: a value of Cause::kind.
 Cause instrument_cause(const std::string& kind, double evidence);
 
+/// Names of the same effect at other axes with the columns of the accepted effect at this position, where an
+/// effect of both axes has these columns too: the readings show only the difference of the two axes.
+std::vector<std::string> of_other_axes(const Findings& found, std::size_t position);
+
 }  // namespace vernier::diagnose

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
-#include <utility>
 
 #include "tools/diagnose/acceptance.h"
 #include "tools/fit/least_squares/statistics.h"
@@ -210,37 +208,6 @@ void Finder::select_again() {
   join_reversals();
 }
 
-void Finder::name_differences() {
-  for (std::size_t& item : chosen_) {
-    const effects::Choice own = pool_.candidate(item).choice;
-    if (pool_.is_custom(item) || !own.axis || own.axis2) continue;
-    std::set<std::size_t> axes = {*own.axis};  // those whose own effect has these columns
-    std::optional<std::size_t> pair;
-    for (const std::size_t other : entry_item_) {
-      const effects::Choice& its = pool_.candidate(other).choice;
-      const bool of_two = its.axis2 && (its.axis == own.axis || its.axis2 == own.axis);
-      if (!of_two && (its.effect != own.effect || its.form != own.form)) continue;
-      if (std::find(chosen_.begin(), chosen_.end(), other) != chosen_.end()) continue;
-      if (!pool_.same_kind(item, other) || !pool_.same_columns(item, other)) continue;
-      if (of_two)
-        pair = other;
-      else if (its.axis)
-        axes.insert(*its.axis);
-    }
-    if (!pair) continue;
-    const effects::Choice& two = pool_.candidate(*pair).choice;
-    if (!axes.contains(*two.axis) || !axes.contains(*two.axis2)) continue;
-    const std::size_t given = std::exchange(item, *pair);
-    const Selection trial = evaluate(chosen_);
-    if (trial.criterion - criterion_ >= thresholds_.evidence) {
-      item = given;
-      continue;
-    }
-    criterion_ = trial.criterion;
-    chi_square_ = trial.chi_square;
-  }
-}
-
 void Finder::join_reversals() {
   constexpr double kRounding = 1e-6;  // of the BIC
   for (const std::size_t item : std::vector<std::size_t>(chosen_)) {
@@ -340,7 +307,6 @@ void Finder::simplify(double share) {
     chi_square_ = best.chi_square;
     if (share > 1) ++i;  // else it may be simplified further
   }
-  name_differences();
 }
 
 double Finder::holders_of(std::size_t simple) const {

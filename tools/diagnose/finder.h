@@ -141,9 +141,6 @@ class Finder {
   /// error of its axis, as in one run out and back: names these two instead, which every axis has, unless
   /// there is very strong evidence against them.
   void name_usual_pairs();
-  /// On a circle the lag of one axis has the column of a lead of another: the readings show only the
-  /// difference. Names the effect of both axes where each of the two has these columns.
-  void name_differences();
   /// Two reversal errors of one axis at one location, or one beside a curve of the axis, can be pieces of one
   /// reversal error that builds up over a travel: between constant points of reversal the travel since a
   /// reversal is a function of position and direction. Names this one effect, alone or beside a straight

@@ -109,11 +109,11 @@ std::string aliases_in_words(const effects::Candidate& candidate, double period,
                             axis.name);
 }
 
-std::string difference_in_words(const std::vector<std::string>& alone) {
+std::string difference_in_words(const std::string& own, const std::vector<std::string>& others) {
   return fmt::format(
-      " Only the difference of the axes is measured here: each of these alone gives the same readings: {}. A "
-      "straight line along each axis at two feeds separates them.",
-      fmt::join(alone, "; "));
+      " Only the difference of the axes is measured here: {}, and {} with the opposite sign, give the same "
+      "readings. A straight line along each axis at two feeds separates them.",
+      own, fmt::join(others, "; "));
 }
 
 std::string pieces_in_words(const std::vector<std::string>& names) {

@@ -11,8 +11,9 @@
 
 namespace vernier::diagnose {
 
-/// Returns the sentence about an effect of two axes that each of them alone can cause: `alone`, their names.
-std::string difference_in_words(const std::vector<std::string>& alone);
+/// Returns the sentence about an effect of one axis, `own`, and the same effect of other axes that give the
+/// same readings.
+std::string difference_in_words(const std::string& own, const std::vector<std::string>& others);
 
 /// Returns the name of a verdict in the JSON result: "missing-effect" ...
 const char* verdict_name(Verdict verdict);

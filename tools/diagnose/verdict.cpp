@@ -391,16 +391,11 @@ class Decision {
                           other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size());
   }
 
-  /// An effect of two axes, and that of each of them alone, can have the same columns.
+  /// The same effect of two axes can have the same columns: a lag on a circle.
   std::string only_the_difference() const {
-    for (std::size_t i = 0; i < accepted_.size(); ++i) {
-      if (!pool_.candidate(accepted_[i]).choice.axis2) continue;
-      std::vector<std::string> alone;
-      for (const std::size_t same : found_.alternatives[i].same)
-        if (const effects::Choice& other = pool_.candidate(same).choice; other.axis && !other.axis2)
-          alone.push_back(pool_.candidate(same).spoken);
-      if (alone.size() > 1) return difference_in_words(alone);
-    }
+    for (std::size_t i = 0; i < accepted_.size(); ++i)
+      if (const std::vector<std::string> names = of_other_axes(found_, i); !names.empty())
+        return difference_in_words(pool_.candidate(accepted_[i]).spoken, names);
     return {};
   }
 

@@ -309,14 +309,17 @@ Diagnosis circles_with_lag(double lag_x_s, double lag_y_s) {
   return diagnose::diagnose(table, machine, parse_measurement(text, "m.csv", machine), options);
 }
 
-// A lag of X and a lead of Y have one column on a circle: none of the two is named alone.
-TEST(Causes, NameTheDifferenceOfTwoAxesOnACircle) {
+// A lag of X and a lead of Y have one column on a circle: one cause, which states both.
+TEST(Causes, StateTheOtherAxisThatGivesTheSameReadingsOnACircle) {
   for (const bool x_is_late : {true, false}) {
     const Diagnosis answer = x_is_late ? circles_with_lag(1.3e-3, 1e-3) : circles_with_lag(1e-3, 1.3e-3);
     ASSERT_EQ(answer.verdict, Verdict::kMissingEffect) << "seed " << kSeed << ": " << answer.explanation;
-    ASSERT_EQ(effects_of(answer), std::vector<std::string>{"servo-mismatch"});
-    EXPECT_NE(answer.explanation.find("X carriage: lag; Y carriage: lag"), std::string::npos)
-        << answer.explanation;
+    ASSERT_EQ(effects_of(answer), std::vector<std::string>{"servo-lag"});
+    for (const char* const axis : {"X carriage: lag", "Y carriage: lag"}) {
+      EXPECT_NE(answer.causes.front().description.find(axis), std::string::npos);
+      EXPECT_NE(answer.explanation.find(axis), std::string::npos) << answer.explanation;
+    }
+    EXPECT_NE(answer.explanation.find("Only the difference of the axes is measured here"), std::string::npos);
   }
 }
 
