@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "tools/format/readings.h"
+#include "tools/fit/coverage/reading_direction.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain/prediction.h"
 #include "tools/residual/repeats.h"
@@ -19,7 +19,7 @@ constexpr double kRowsPerCell = 6;  // minimum, so that a mean is more accurate 
 constexpr std::size_t kLeastRowsOfPicture = 4;  // a picture of fewer rows shows less than their list
 constexpr double kFlat = 0.02;  // of the longest side: a shorter side is the set-up of one plane or line
 
-/// Nominal tool points of all rows in the measuring frame, mm.
+/// Tool points of all rows in the measuring frame of each row, mm.
 Eigen::Matrix3Xd tool_points(const model::Machine& machine, const model::Measurement& m) {
   model::Measurement probe = m;
   probe.observations.clear();
@@ -37,25 +37,31 @@ struct RowVectors {
   std::vector<int> seen;
 };
 
-RowVectors row_vectors(const model::Measurement& m, const Eigen::VectorXd& residual,
-                       const Eigen::Matrix3Xd& point) {
+/// Direction of a reading in workpiece coordinates. `point`: tool points in the measuring frame.
+Eigen::Vector3d direction_of(const model::Machine& machine, const model::Measurement& m,
+                             const model::Observation& o, const Eigen::Matrix3Xd& point) {
+  const auto row = static_cast<Eigen::Index>(o.row);
+  Eigen::Vector3d along;
+  if (o.kind == model::ObservationKind::kLength)
+    along = point.col(row) - m.centre.col(row);
+  else if (o.kind == model::ObservationKind::kDistance)
+    along = point.col(row) - point.col(static_cast<Eigen::Index>(m.other_end[o.row]));
+  else
+    return fit::reading_direction(machine, m, o);
+  return fit::measuring_frame(machine, m, o.row).transpose() * along.normalized();
+}
+
+RowVectors row_vectors(const model::Machine& machine, const model::Measurement& m,
+                       const Eigen::VectorXd& residual) {
+  const Eigen::Matrix3Xd point = tool_points(machine, m);
   RowVectors vectors{Eigen::Matrix3Xd::Zero(3, point.cols()), std::vector<int>(m.rows(), 0)};
   for (std::size_t i = 0; i < m.observations.size(); ++i) {
     const model::Observation& o = m.observations[i];
-    const auto row = static_cast<Eigen::Index>(o.row);
     if (model::is_rotation(o.kind) || m.check[o.row] != 0) continue;
     // A surface has a normal that only the fit knows.
     if (model::is_of_thing(o.kind) && m.things[m.thing[o.row]].artefact.dimension() != 3) continue;
-    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-    if (o.kind == model::ObservationKind::kLength)
-      direction = (point.col(row) - m.centre.col(row)).normalized();
-    else if (o.kind == model::ObservationKind::kD)
-      for (Eigen::Index k = 0; k < 3; ++k) direction[k] = m.states.normal[static_cast<std::size_t>(k)][row];
-    else if (o.kind == model::ObservationKind::kDistance)
-      direction = (point.col(row) - point.col(static_cast<Eigen::Index>(m.other_end[o.row]))).normalized();
-    else
-      direction[static_cast<Eigen::Index>(format::component_of(o.kind))] = 1;
-    vectors.value.col(row) += residual[static_cast<Eigen::Index>(i)] * direction;
+    vectors.value.col(static_cast<Eigen::Index>(o.row)) +=
+        residual[static_cast<Eigen::Index>(i)] * direction_of(machine, m, o, point);
     ++vectors.seen[o.row];
   }
   return vectors;
@@ -65,8 +71,10 @@ RowVectors row_vectors(const model::Measurement& m, const Eigen::VectorXd& resid
 
 std::vector<FailureCell> failure_cells(const model::Machine& machine, const model::Measurement& m,
                                        const Eigen::VectorXd& residual) {
-  const Eigen::Matrix3Xd point = tool_points(machine, m);
-  const RowVectors vectors = row_vectors(m, residual, point);
+  model::Machine without_set_up = machine;
+  without_set_up.base_shifts.clear();
+  const Eigen::Matrix3Xd point = tool_points(without_set_up, m);  // workpiece coordinates
+  const RowVectors vectors = row_vectors(machine, m, residual);
   std::vector<Eigen::Index> used;
   for (std::size_t row = 0; row < m.rows(); ++row)
     if (vectors.seen[row] > 0) used.push_back(static_cast<Eigen::Index>(row));

@@ -469,6 +469,31 @@ TEST(FailurePicture, CellsHoldTheMeanVectorWhereItIs) {
   EXPECT_EQ(rows, p.m.rows());
 }
 
+// An instrument 2 m away that is turned by 90 deg, and one in machine coordinates: one picture of the
+// machine.
+TEST(FailurePicture, CellsAreInMachineCoordinates) {
+  std::string text = kMachine;
+  text.insert(text.find("<machineaxes>"),
+              R"(<static><BaseShift run="r0" X="2000" Y="0" Z="0" rX="0" rY="0" rZ="90"/></static>)");
+  Planted p;
+  p.machine = parse_machine(text, "m.xml");
+  p.m = survey(p.machine, 300, 2, p.random);
+  p.residual = white(p.m, 1e-3, p.random);
+  // y of the first instrument is X of the machine.
+  for (std::size_t i = 0; i < p.m.observations.size(); ++i) {
+    const bool turned = p.m.observations[i].row < 150;
+    if (p.m.observations[i].kind == (turned ? ObservationKind::kY : ObservationKind::kX))
+      p.residual[static_cast<Eigen::Index>(i)] += 5e-3;
+  }
+  const FailurePicture picture = p.picture();
+  ASSERT_GT(picture.cells.size(), 8U);
+  for (const FailureCell& cell : picture.cells) {
+    EXPECT_LE(cell.point_mm.maxCoeff(), 600);
+    EXPECT_GE(cell.point_mm.minCoeff(), -300);
+    EXPECT_LT((cell.mean_um - Eigen::Vector3d(5, 0, 0)).norm(), 5 * cell.noise_um + 0.5);
+  }
+}
+
 TEST(FailurePicture, JsonHoldsFindingsSharesAndCells) {
   Planted p;
   plant(p.residual, p.m, ObservationKind::kX, [&](Eigen::Index i) { return -5e-6 * p.axis(0)[i]; });

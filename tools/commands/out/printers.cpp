@@ -86,7 +86,7 @@ void print_shape(std::FILE* out, const exchange::BedShape& shape) {
     fmt::print(
         out,
         "touches of one place differ by {:.3g} um rms from their mean; a bed that was warmer in some of "
-        "the touches has another shape there\n",
+        "the touches has another shape there (import printer --series N reads the touches of one survey)\n",
         shape.repeat_rms_um);
   if (shape.checks > 0)
     fmt::print(out, "check rows with the nozzle: {}, rms of the height error {:.3g} um\n", shape.checks,

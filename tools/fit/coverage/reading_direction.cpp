@@ -7,27 +7,25 @@
 #include "tools/model/parameters.h"
 
 namespace vernier::fit {
-namespace {
 
-/// Measuring frame <- workpiece of a row's set-up: Rx Ry Rz, FORMATS section 1.
-Eigen::Matrix3d frame_of(const model::Machine& machine, const model::Measurement& m, std::size_t row) {
-  const auto shift =
-      model::base_shift_of(machine, m.states.names(m.states.setup)[m.states.of(m.states.setup, row)]);
+Eigen::Matrix3d measuring_frame(const model::Machine& machine, const model::Measurement& rows,
+                                std::size_t row) {
+  const auto shift = model::base_shift_of(
+      machine, rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, row)]);
   if (!shift) return Eigen::Matrix3d::Identity();
   const auto& value = machine.base_shifts[*shift].value;
+  // Rx Ry Rz: FORMATS section 1.
   return (Eigen::AngleAxisd(maths::kRadPerDeg * value[3], Eigen::Vector3d::UnitX()) *
           Eigen::AngleAxisd(maths::kRadPerDeg * value[4], Eigen::Vector3d::UnitY()) *
           Eigen::AngleAxisd(maths::kRadPerDeg * value[5], Eigen::Vector3d::UnitZ()))
       .toRotationMatrix();
 }
 
-}  // namespace
-
 Eigen::Vector3d reading_direction(const model::Machine& machine, const model::Measurement& rows,
                                   const model::Observation& reading) {
   const auto row = static_cast<Eigen::Index>(reading.row);
   if (reading.kind <= model::ObservationKind::kZ)
-    return frame_of(machine, rows, reading.row).transpose() *
+    return measuring_frame(machine, rows, reading.row).transpose() *
            Eigen::Vector3d::Unit(static_cast<Eigen::Index>(reading.kind));
   if (reading.kind == model::ObservationKind::kD)
     return {rows.states.normal[0][row], rows.states.normal[1][row], rows.states.normal[2][row]};

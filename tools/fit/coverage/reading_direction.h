@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 
 #include "tools/model/machine.h"
 #include "tools/model/measurement.h"
 
 namespace vernier::fit {
+
+/// Returns the rotation from workpiece coordinates to the measuring frame of the set-up of a row.
+Eigen::Matrix3d measuring_frame(const model::Machine& machine, const model::Measurement& rows,
+                                std::size_t row);
 
 /// Returns the direction of a length reading, a unit vector in workpiece coordinates. For a reading x, y or
 /// z, the set-up of the row gives the direction. For a reading d, the direction is the normal of the row. The

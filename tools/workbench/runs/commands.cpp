@@ -28,7 +28,8 @@ constexpr Allowed kAllowed[] = {
      "type axis stations tool-side work-side centre tool name urdf tip reading errors artefact output "
      "measurements"},
     {"import table", false, true,
-     "file separator decimal skip table sheet unit sign column deviation leave set fill one-motion directions "
+     "file separator decimal skip table sheet unit sign column deviation leave set fill one-motion "
+     "directions "
      "check-every machine output! save-profile"},
     {"import ballbar", false, true, "files repair-time-base output"},
     {"import ballbar-trace", false, true, "files radius plane length feed output"},

@@ -2,6 +2,7 @@
 import { el, table, tiles } from './dom.js';
 import { number, printed } from './data.js';
 import { beforeAfter, ladder } from './plots.js';
+import { t } from './translate.js';
 
 const kVerdicts = {
   'missing-effect': (best) => `Missing: ${best ? title(best) : 'an effect'}${best?.effect === 'custom' ? ', no named physics' : ''}`,
@@ -115,7 +116,7 @@ export function candidates(result) {
     ['chance', false, (one) => number(one.p_value, 2)],
     ...(has('score') ? [['score', false, (one) => number(one.score, 4)]] : []),
     ...(list.some((one) => one.confounded_with?.length)
-      ? [['not distinguished from', true, (one) => (one.confounded_with ?? []).join(', ')]]
+      ? [['not distinguished from', true, (one) => (one.confounded_with ?? []).map(t).join(', ')]]
       : []),
     ...(has('why_not') ? [['why not', true, (one) => one.why_not ?? '']] : []),
   ];

@@ -80,7 +80,7 @@ function picture(cells) {
     el(
       'p',
       { class: 'note' },
-      `${sure} of ${points.length} means are longer than three times what chance leaves of them. At the mean tool point of each cell, in the measuring frame; lengths count along the bar, deviations along their normal.`,
+      `${sure} of ${points.length} means are longer than three times what chance leaves of them. At the mean tool point of each cell, in machine coordinates; lengths count along the bar, deviations along their normal.`,
     ),
   ];
 }
