@@ -507,6 +507,18 @@ async function jointsOfOtherNames(page) {
   await page.click('#assignment-is-right');
   await measured(page, 'greek_read_read.csv');
   await page.until("document.body.dataset.subject === 'yes'", 'the rows');
+  // A controller's log without units, beside the machine: no column is guessed one by one.
+  const log = poses(['A1', 'A2', 'A3', 'A4', 'A5', 'A6'])
+    .replaceAll(/ \[(deg|mm)\]/g, '')
+    .replace(';x;y;z', ';X;Y;Z');
+  await page.drop([{ name: 'log.csv', text: log }]);
+  await words(page, '#sheet-message', '');
+  await page.click('#sheet-by-machine');
+  await page.until("document.getElementById('sheet-assignment-is-right') !== null", 'the assignment of the log');
+  await page.click('#sheet-assignment-is-right');
+  await measured(page, 'log_read.csv');
+  await page.until("document.body.dataset.subject === 'yes'", 'the rows');
+  assert.ok(readings('log_read.csv').startsWith(`${named}[deg],`), readings('log_read.csv'));
   // One of the columns is of no use: the others are named by hand, and the table says how the axes are called.
   await page.drop([{ name: 'five.csv', text: poses(kOwnNames).replace('wrist_3 [deg]', 'wrist_3 [s]') }]);
   await measured(page, 'five_read.csv');

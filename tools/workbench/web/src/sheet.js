@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { choice, el } from '../../../report/web/src/dom.js';
 import { freeName, getJson, postJson, run } from './api.js';
+import { byMachine, kNames } from './joints.js';
 import { optionFields } from './options.js';
 import { button, gate, guarded, pageWords, panel } from './parts.js';
-import { store } from './store.js';
+import { on, store } from './store.js';
 
 /** Columns that only the import of a tracker or of a probe understands. */
 const kTracker = new Set(['rX', 'rY', 'rZ', 'qw', 'qx', 'qy', 'qz']),
@@ -110,10 +111,10 @@ function columnRow(column, k, preview, change) {
 
 /**
  * Takes a spreadsheet, a tracker's or a probe's table: what is understood without help is imported at once, what is not is
- * asked for here. `done(measurements)` is called with the names of the measurement files: one for each sheet that was imported.
+ * asked for here. `handOver(measurements)` is called with the names of the measurement files: one for each sheet that was imported.
  * `asks`: the meaning of the columns is asked for although nothing is missing.
  */
-export async function importSheet(box, name, done, asks = false) {
+export async function importSheet(box, name, handOver, asks = false) {
   const said = new Map(),
     read_into = new Map(), // the measurement file of each sheet that was imported
     tables = new Set(); // the sheets to import; two sheets that are read as one table count as one
@@ -158,7 +159,7 @@ export async function importSheet(box, name, done, asks = false) {
         ),
       );
       read_into.set(preview.sheet, output);
-      await done([...read_into.values()]);
+      await handOver([...read_into.values()]);
     });
   /** A button for each sheet with a table that was not imported yet: the command line reads each by a call of its own. */
   const others = (preview) => {
@@ -210,6 +211,16 @@ export async function importSheet(box, name, done, asks = false) {
     node.querySelector('select').id = 'sheet-of-workbook';
     return node;
   };
+  /** Where no column has the name of an axis of the machine: the program compares the names itself. */
+  const byAxes = (now) => {
+    const names = axes.split(', ').map((one) => one.replace(/ \[.*$/, ''));
+    if (!now.message || kind !== 'table' || !axes || now.columns.some((one) => names.includes(one.name))) return null;
+    const done = async (output) => {
+      box.replaceChildren(panel(null, el('p', { id: 'imported' }, `${name}: read into `, el('strong', {}, output), '.')));
+      await handOver([output]);
+    };
+    return el('div', {}, el('p', { class: 'note' }, kNames), byMachine(name, { error, done, prefix: 'sheet-' }));
+  };
   const later = () => button('Not now', () => box.replaceChildren(), { class: 'quiet' });
   /** The button of an import that cannot be done yet, with the reason. */
   const notYet = () => {
@@ -246,6 +257,7 @@ export async function importSheet(box, name, done, asks = false) {
         axes ? el('p', { class: 'note', id: 'axes-of-machine' }, `Axes of the machine: ${axes}.`) : null,
         now.message && kind === 'table' ? el('p', { class: 'error', role: 'alert', id: 'sheet-message' }, onPage(now.message)) : null,
         now.message ? el('div', { class: 'controls', id: 'sheet-confirmations' }, confirmations(now)) : null,
+        byAxes(now),
         el(
           'div',
           { class: 'controls' },
@@ -300,5 +312,11 @@ export async function importSheet(box, name, done, asks = false) {
     kind = likely(first);
     return first.message === null && kind === 'table' && !asks ? doImport(first) : draw(first);
   }
+  // A machine that was chosen after the table was dropped has axes to compare with.
+  on('rows', async () => {
+    if (axes || !store.machine || said.size || !box.querySelector('#sheet-columns')) return;
+    axes = await axesOf(store.machine);
+    await draw();
+  });
   await begin();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
-import { freeName, Refused, run } from './api.js';
+import { freeName, run } from './api.js';
+import { byMachine, kNames } from './joints.js';
 import { button, gate, guarded, panel, refusalWords } from './parts.js';
 import { kDeclareBed } from './instrument.js';
 import { on, store } from './store.js';
@@ -10,18 +11,6 @@ function asked(refusal) {
   const file = refusal?.match(/^(.+?):\d+: /)?.[1];
   return { file, columns: [...(refusal?.matchAll(/--set "([^"=]+)=POSITION"/g) ?? [])].map((one) => one[1]) };
 }
-
-const kNames =
-  'The columns may have other names: a1 or joint_1 instead of the names in the machine file. The program compares the names and numbers, and writes a new measurement file.';
-
-const kByHand =
-  'The program does not find the columns of the axes. Press "Choose the columns by hand": there, write the name of an axis in the place of the name of its column.';
-
-/** The assignment of columns to axes that a refusal proposes, as words of the option column. */
-const proposed = (message) =>
-  [...message.matchAll(/--column (?:"([^"]+)"|'([^']+)'|(\S+))/g)]
-    .map(([, ...words]) => words.find((one) => one !== undefined))
-    .filter((one) => one.includes('=') && !one.includes('HEADING'));
 
 const number = (id, label, size) => el('input', { type: 'text', inputmode: 'decimal', id, 'aria-label': label, size });
 const value = (input) => input.value.trim().replace(',', '.');
@@ -55,51 +44,19 @@ export function stoodPanel(choose, byTable) {
       store.machine,
       store.measurements.flatMap((one) => (one === file ? outputs : [one])),
     );
-  /** A new measurement file whose joints have the names of the machine. */
-  const byMachine = (file) => {
-    const answers = el('div', { class: 'controls' });
-    const read = (column) =>
-      guarded(error, async () => {
-        const output = freeName(`${file.replace(/\.[^.]*$/, '')}_read`, '.csv');
-        const { machine } = store;
-        try {
-          await run({ command: 'import table', file, ...(column.length ? { column } : {}), machine, output });
-        } catch (why) {
-          if (!(why instanceof Refused) || column.length) throw why;
-          doubt(why, proposed(why.message));
-          return;
-        }
-        await instead(file, [output]);
-      });
-    const byName = button('Read the columns as the axes of the machine', () => read([]), { id: 'by-machine' });
-    /** The program is not sure which column is which axis: the user confirms its assignment. */
-    const doubt = (why, columns) => {
-      if (!columns.length) {
-        error.replaceChildren(el('p', { class: 'error', role: 'alert' }, kByHand));
-        return;
-      }
-      error.replaceChildren(
-        el('p', { class: 'note', role: 'status' }, 'As many columns may be the axes, in the order of the machine file:'),
-        el(
-          'ul',
-          {},
-          columns.map((one) => el('li', {}, `${one.replace(/=.*$/, '')}: "${one.replace(/^[^=]*=/, '')}"`)),
-        ),
-      );
-      answers.replaceChildren(button('This assignment is right', () => read(columns), { id: 'assignment-is-right' }));
-    };
+  const byNames = (file) => {
     const byHand = button('Choose the columns by hand', () => byTable(file, (outputs) => instead(file, outputs)), {
       class: 'quiet',
       id: 'by-hand',
     });
-    return el('div', {}, el('div', { class: 'controls' }, byName, byHand), answers);
+    return byMachine(file, { error, byHand, done: (output) => instead(file, [output]) });
   };
   const draw = () => {
     const { file, columns } = asked(store.refusal);
     if (!store.refusal) return room.replaceChildren();
     const words = el('p', { class: 'error', role: 'alert' }, refusalWords(store.refusal));
     if (file && /--machine MACHINE/.test(store.refusal))
-      return room.replaceChildren(panel(`No axis of the machine has a column in ${file}`, el('p', {}, kNames), error, byMachine(file)));
+      return room.replaceChildren(panel(`No axis of the machine has a column in ${file}`, el('p', {}, kNames), error, byNames(file)));
     if (!columns.length || !file)
       return room.replaceChildren(
         panel(

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { el } from '../../../report/web/src/dom.js';
+import { freeName, Refused, run } from './api.js';
+import { button, guarded } from './parts.js';
+import { store } from './store.js';
+
+export const kNames =
+  'The columns may have other names: a1 or joint_1 instead of the names in the machine file. The program compares the names and numbers, and writes a new measurement file.';
+
+const kByHand =
+  'The program does not find the columns of the axes. Press "Choose the columns by hand": there, write the name of an axis in the place of the name of its column.';
+
+/** The assignment of columns to axes that a refusal proposes, as words of the option column. */
+const proposed = (message) =>
+  [...message.matchAll(/--column (?:"([^"]+)"|'([^']+)'|(\S+))/g)]
+    .map(([, ...words]) => words.find((one) => one !== undefined))
+    .filter((one) => one.includes('=') && !one.includes('HEADING'));
+
+/**
+ * A button that writes a new measurement file whose joints have the names of the machine. `done(output)`: called with its name.
+ * `error`: where a refusal is shown; `byHand`: a button beside it; `prefix`: of the ids.
+ */
+export function byMachine(file, { error, byHand = null, done, prefix = '' }) {
+  const answers = el('div', { class: 'controls' });
+  const read = (column) =>
+    guarded(error, async () => {
+      const output = freeName(`${file.replace(/\.[^.]*$/, '')}_read`, '.csv');
+      try {
+        await run({ command: 'import table', file, ...(column.length ? { column } : {}), machine: store.machine, output });
+      } catch (why) {
+        if (!(why instanceof Refused) || column.length) throw why;
+        doubt(proposed(why.message));
+        return;
+      }
+      await done(output);
+    });
+  /** The program is not sure which column is which axis: the user confirms its assignment. */
+  const doubt = (columns) => {
+    if (!columns.length) {
+      error.replaceChildren(el('p', { class: 'error', role: 'alert' }, kByHand));
+      return;
+    }
+    error.replaceChildren(
+      el('p', { class: 'note', role: 'status' }, 'As many columns may be the axes, in the order of the machine file:'),
+      el(
+        'ul',
+        {},
+        columns.map((one) => el('li', {}, `${one.replace(/=.*$/, '')}: "${one.replace(/^[^=]*=/, '')}"`)),
+      ),
+    );
+    answers.replaceChildren(button('This assignment is right', () => read(columns), { id: `${prefix}assignment-is-right` }));
+  };
+  const byName = button('Read the columns as the axes of the machine', () => read([]), { id: `${prefix}by-machine` });
+  return el('div', {}, el('div', { class: 'controls' }, byName, byHand), answers);
+}
