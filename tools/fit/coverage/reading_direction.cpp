@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/fit/coverage/reading_direction.h"
 
-#include <Eigen/Geometry>
-
-#include "tools/maths/factors.h"
+#include "tools/model/chain/chain_rows.h"
 #include "tools/model/parameters.h"
 
 namespace vernier::fit {
@@ -13,12 +11,7 @@ Eigen::Matrix3d measuring_frame(const model::Machine& machine, const model::Meas
   const auto shift = model::base_shift_of(
       machine, rows.states.names(rows.states.setup)[rows.states.of(rows.states.setup, row)]);
   if (!shift) return Eigen::Matrix3d::Identity();
-  const auto& value = machine.base_shifts[*shift].value;
-  // Rx Ry Rz: FORMATS section 1.
-  return (Eigen::AngleAxisd(maths::kRadPerDeg * value[3], Eigen::Vector3d::UnitX()) *
-          Eigen::AngleAxisd(maths::kRadPerDeg * value[4], Eigen::Vector3d::UnitY()) *
-          Eigen::AngleAxisd(maths::kRadPerDeg * value[5], Eigen::Vector3d::UnitZ()))
-      .toRotationMatrix();
+  return model::sixdof_frame(machine.base_shifts[*shift].value).rotation;
 }
 
 Eigen::Vector3d reading_direction(const model::Machine& machine, const model::Measurement& rows,

@@ -429,12 +429,13 @@ class ProbeLog {
     const double begin = touches_.empty() ? 0 : touches_.front().t;
     for (Touch& one : touches_) one.t -= begin;
     // Without a line that ends a survey, the log is one survey with a temperature, unless the user chooses.
-    if (const auto ends = ends_by_temperature(); series_.size() < 2 && ends.size() > 1) {
-      if (options_.series)
-        series_ = ends;
-      else
-        result_.surveys = list_of(ends);
-    }
+    if (series_.size() < 2)
+      if (const auto ends = ends_by_temperature(); ends.size() > 1) {
+        if (options_.series)
+          series_ = ends;
+        else
+          result_.surveys = list_of(ends);
+      }
     return chosen();
   }
 

@@ -23,6 +23,9 @@
 namespace vernier::importer {
 namespace {
 
+/// Largest error of a machine as a share of its travel (kImplausibleShare in deviation_sizes.cpp).
+constexpr double kErrorShare = 0.05;
+
 /// What the values of a column are, beside the positions of an axis.
 enum class Values { kUnclear, kPositions, kDeviations, kOpposite, kSteps };
 
@@ -37,8 +40,8 @@ std::string axis_shown(const sheet::Heading& heading, const Guess& guess) {
   return display ? axis : "";
 }
 
-/// Compares the values of a column with the positions of an axis, row by row. Without units on both sides the
-/// result is kUnclear.
+/// Compares the values of a column with the positions of an axis, row by row. With a unit on one side only
+/// the result is kUnclear.
 Values values_beside(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                      const std::vector<SheetColumn>& columns, std::size_t position, std::size_t reading) {
   // Two columns without a unit have the same one if their values agree.
@@ -63,15 +66,14 @@ Values values_beside(const sheet::Sheet& sheet, const sheet::SheetTable& table,
   if (at.size() < kEnough) return Values::kUnclear;
   const auto [least, most] = std::minmax_element(at.begin(), at.end());
   const double travel = *most - *least;
-  // No machine has errors of a twentieth of its travel (kImplausibleShare in deviation_sizes.cpp).
-  constexpr double kShare = 0.05;
   if (!(travel > 0)) return Values::kUnclear;
-  if (no_units && !(maths::median(apart) < kShare * travel)) return Values::kUnclear;
-  if (!no_units && *std::max_element(size.begin(), size.end()) < kShare * travel) return Values::kDeviations;
-  if (maths::median(apart) < kShare * travel) return Values::kPositions;
-  if (maths::median(sum) < kShare * travel) return Values::kOpposite;
+  if (no_units && !(maths::median(apart) < kErrorShare * travel)) return Values::kUnclear;
+  if (!no_units && *std::max_element(size.begin(), size.end()) < kErrorShare * travel)
+    return Values::kDeviations;
+  if (maths::median(apart) < kErrorShare * travel) return Values::kPositions;
+  if (maths::median(sum) < kErrorShare * travel) return Values::kOpposite;
   // The steps are a part of the travel: they agree within a twentieth of themselves.
-  if (maths::median(step) < kShare * maths::median(size)) return Values::kSteps;
+  if (maths::median(step) < kErrorShare * maths::median(size)) return Values::kSteps;
   return Values::kUnclear;
 }
 
@@ -149,7 +151,6 @@ std::string axis_in(const sheet::Heading& heading, const Guess& guess) {
 /// below a twentieth of the range of the targets. nullopt: no two candidates are like this.
 std::optional<std::pair<std::size_t, std::size_t>> target_and_deviation(
     const sheet::Sheet& sheet, const sheet::SheetTable& table, const std::vector<std::size_t>& candidates) {
-  constexpr double kShare = 0.05;  // no machine has errors of a twentieth of its travel
   std::optional<std::size_t> target, deviation;
   for (const std::size_t k : candidates)
     if (!may_name_deviation(table.headings[k]) &&
@@ -157,7 +158,8 @@ std::optional<std::pair<std::size_t, std::size_t>> target_and_deviation(
       target = k;
   if (!target) return std::nullopt;
   for (const std::size_t k : candidates) {
-    if (k == *target || !(extent_of(sheet, table, k).size < kShare * extent_of(sheet, table, *target).range))
+    if (k == *target ||
+        !(extent_of(sheet, table, k).size < kErrorShare * extent_of(sheet, table, *target).range))
       continue;
     if (!deviation ||
         (may_name_deviation(table.headings[k]) && !may_name_deviation(table.headings[*deviation])))

@@ -43,15 +43,11 @@ function onPage(message) {
   return pageWords(words, 'vernier import table');
 }
 
-/** The axes of a machine file with their units: "Ja1 [deg], Ja2 [deg]"; empty if they cannot be read. */
+/** The axes of a machine file: [{name, unit}]; empty if they cannot be read. */
 const axesOf = (machine) =>
   getJson('/api/names', { machine }).then(
-    ({ names }) =>
-      names
-        .filter((one) => one.what === 'axis position')
-        .map((one) => `${one.name} [${one.unit}]`)
-        .join(', '),
-    () => '',
+    ({ names }) => names.filter((one) => one.what === 'axis position'),
+    () => [],
   );
 
 /** The options of an import without the preview's help: a tracker's and a probe's table. */
@@ -119,7 +115,7 @@ export async function importSheet(box, name, handOver, asks = false) {
     read_into = new Map(), // the measurement file of each sheet that was imported
     tables = new Set(); // the sheets to import; two sheets that are read as one table count as one
   let kind = null,
-    axes = '', // of the chosen machine
+    axes = [], // of the chosen machine
     sheet = '', // of a workbook; empty: the program's choice
     turn = 0;
   const error = el('div', {});
@@ -213,8 +209,8 @@ export async function importSheet(box, name, handOver, asks = false) {
   };
   /** Where no column has the name of an axis of the machine: the program compares the names itself. */
   const byAxes = (now) => {
-    const names = axes.split(', ').map((one) => one.replace(/ \[.*$/, ''));
-    if (!now.message || kind !== 'table' || !axes || now.columns.some((one) => names.includes(one.name))) return null;
+    const isAxis = ({ name: column }) => axes.some((axis) => axis.name === column);
+    if (!now.message || kind !== 'table' || !axes.length || now.columns.some(isAxis)) return null;
     const done = async (output) => {
       box.replaceChildren(panel(null, el('p', { id: 'imported' }, `${name}: read into `, el('strong', {}, output), '.')));
       await handOver([output]);
@@ -254,7 +250,13 @@ export async function importSheet(box, name, handOver, asks = false) {
       panel(
         `What is in ${name}?`,
         el('p', { id: 'how-read' }, onPage(now.how)),
-        axes ? el('p', { class: 'note', id: 'axes-of-machine' }, `Axes of the machine: ${axes}.`) : null,
+        axes.length
+          ? el(
+              'p',
+              { class: 'note', id: 'axes-of-machine' },
+              `Axes of the machine: ${axes.map((one) => `${one.name} [${one.unit}]`).join(', ')}.`,
+            )
+          : null,
         now.message && kind === 'table' ? el('p', { class: 'error', role: 'alert', id: 'sheet-message' }, onPage(now.message)) : null,
         now.message ? el('div', { class: 'controls', id: 'sheet-confirmations' }, confirmations(now)) : null,
         byAxes(now),
@@ -314,7 +316,7 @@ export async function importSheet(box, name, handOver, asks = false) {
   }
   // A machine that was chosen after the table was dropped has axes to compare with.
   on('rows', async () => {
-    if (axes || !store.machine || said.size || !box.querySelector('#sheet-columns')) return;
+    if (axes.length || !store.machine || said.size || !box.querySelector('#sheet-columns')) return;
     axes = await axesOf(store.machine);
     await draw();
   });
