@@ -366,7 +366,7 @@ std::string machine_file(const MachinePlan& plan) {
       "fit. This element is for\n"
       "           all rows; a further element with run=\"LABEL\" is for the rows of this run. -->\n"
       "      <BaseShift" +
-      base_attributes(plan) + "/>\n    </static>\n";
+      base_attributes(plan) + "/>\n" + (plan.reflector ? kReflectorLine : "") + "    </static>\n";
   text += axes_text(plan);
   if (!robot) text += tables_text(plan);
   for (const PlannedArtefact& one : plan.artefacts)

@@ -48,7 +48,14 @@ struct MachinePlan {
   /// the scales of X and Y. All other errors stay 0.
   bool square_only = false;
   std::vector<PlannedArtefact> artefacts;
+  /// True if the readings are those of a reflector at an unknown place on the tool: <ToolShift/>, which is a
+  /// part of the set-up.
+  bool reflector = false;
 };
+
+/// The line of a machine file that declares the unknown place of a reflector on the tool, within <static>.
+inline constexpr const char* kReflectorLine =
+    "      <ToolShift/> <!-- unknown place of the reflector on the tool, estimated by the fit -->\n";
 
 /// A type of machine for which the command `new` has a default chain.
 struct MachineType {

@@ -116,6 +116,13 @@ std::string difference_in_words(const std::string& own, const std::vector<std::s
       own, fmt::join(others, "; "));
 }
 
+std::string reflector_in_words(const std::string& machine_file) {
+  return fmt::format(
+      " If the readings are those of a reflector at an unknown place on the tool, this offset is no error of "
+      "the machine: vernier set {} --reflector -o NEW.xml declares it.",
+      machine_file);
+}
+
 std::string pieces_in_words(const std::vector<std::string>& names) {
   return fmt::format(
       "{} effects together reduce the residual to the noise, but they are probably parts of one function of "

@@ -46,6 +46,10 @@ std::string cause_in_words(const CandidateFinding& cause, const std::string& nex
 std::string aliases_in_words(const effects::Candidate& candidate, double period,
                              const std::vector<double>& aliases, const model::Axis& axis);
 
+/// Returns the sentence about an offset of the tool point that can be the place of a reflector on the tool,
+/// with the command that declares this place.
+std::string reflector_in_words(const std::string& machine_file);
+
 /// Returns the sentence about effects that are likely parts of one function of position.
 std::string pieces_in_words(const std::vector<std::string>& names);
 

@@ -388,7 +388,8 @@ class Decision {
     const std::vector<Alternative>& other = found_.alternatives.front().other;
     return cause_in_words(answer_.candidates.front(),
                           other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
-                          other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size());
+                          other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size()) +
+           or_a_reflector();
   }
 
   /// The same effect of two axes can have the same columns: a lag on a circle.
@@ -396,6 +397,31 @@ class Decision {
     for (std::size_t i = 0; i < accepted_.size(); ++i)
       if (const std::vector<std::string> names = of_other_axes(found_, i); !names.empty())
         return difference_in_words(pool_.candidate(accepted_[i]).spoken, names);
+    return {};
+  }
+
+  /// An offset behind the last axis moves the tool point only, as the place of a reflector on the tool does.
+  std::string or_a_reflector() const {
+    const model::Machine& machine = found_.machine;
+    if (!machine.tool_shifts.empty() || found_.measurement.observations.empty()) return {};
+    for (const std::size_t item : accepted_) {
+      const effects::Choice& choice = pool_.candidate(item).choice;
+      if (choice.form->place != effects::PlaceRule::kPoint || !choice.place || choice.place->workpiece)
+        continue;
+      const auto moves = [](const model::Transform& transform) {
+        for (std::size_t dof = 0; dof < transform.dof_count(); ++dof)
+          if (model::any_node(*transform.dof[dof], [](const model::Expr& node) {
+                return node.op == model::Op::kSymbol && (node.symbol.kind == model::SymbolKind::kAxis ||
+                                                         node.symbol.kind == model::SymbolKind::kTableValue);
+              }))
+            return true;
+        return false;
+      };
+      const auto behind = machine.tool.begin() + static_cast<std::ptrdiff_t>(choice.place->transform) + 1;
+      const bool turns = std::any_of(machine.axes.begin(), machine.axes.end(),
+                                     [](const model::Axis& axis) { return axis.rotary; });
+      if (turns && std::none_of(behind, machine.tool.end(), moves)) return reflector_in_words(machine.file);
+    }
     return {};
   }
 

@@ -3,11 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "tools/format/columns.h"
+#include "tools/import/order/motion_directions.h"
 
 namespace vernier::lint {
 namespace {
@@ -56,7 +61,49 @@ Runs runs_of(const LintTable& table, const LintColumn& sense, const LintColumn& 
   return runs;
 }
 
+/// Number of poses that the rows reach with motions of `axis` in both directions. `axes`: all axes.
+std::size_t poses_from_both_sides(const LintTable& table, const LintColumn& axis,
+                                  const std::vector<const LintColumn*>& axes) {
+  constexpr double kStill = 0.01;  // mm or deg: an axis stops to within some um
+  const LintColumn* const run = table.find(format::columns::kRun);
+  const std::vector<int> directions = importer::directions_of_last_motion(
+      axis.value, run == nullptr ? std::vector<std::string>() : run->cell, kStill);
+  std::map<std::vector<double>, std::set<int>> reached;
+  for (std::size_t row = 1; row < table.rows.size(); ++row) {
+    if (directions[row] == 0 || !(std::abs(axis.value[row] - axis.value[row - 1]) > kStill)) continue;
+    std::vector<double> pose;
+    for (const LintColumn* const one : axes) pose.push_back(std::round(one->value[row] / kStill));
+    if (std::all_of(pose.begin(), pose.end(), [](double value) { return std::isfinite(value); }))
+      reached[pose].insert(directions[row]);
+  }
+  return static_cast<std::size_t>(
+      std::count_if(reached.begin(), reached.end(), [](const auto& one) { return one.second.size() > 1; }));
+}
+
 }  // namespace
+
+void look_for_missing_directions(const LintTable& table, const LintNames& names, LintFindings& findings) {
+  constexpr std::size_t kFewestPoses = 3;  // fewer are repeats of a start or of a check
+  std::vector<const LintColumn*> axes;
+  for (const LintColumn& column : table.columns)
+    if (names.is_axis(column.name) && !column.label) axes.push_back(&column);
+  for (const LintColumn* const axis : axes) {
+    const std::string sense = format::axis_column(format::AxisQuantity::kSense, axis->name);
+    if (table.find(sense) != nullptr) continue;
+    const std::size_t poses = poses_from_both_sides(table, *axis, axes);
+    if (poses < kFewestPoses) continue;
+    findings.remark(
+        table.header_line, axis->name,
+        fmt::format(
+            "by their order, the rows reach {} positions from both sides of {}, and the file has no {}: "
+            "the model predicts no reversal error (backlash) for these rows",
+            poses, axis->name, sense),
+        fmt::format(
+            "if the rows are in the order of the measurement, import the file again with the directions "
+            "of the motion (import table --directions from-order), or add the column {}",
+            sense));
+  }
+}
 
 void look_at_directions(const LintTable& table, const LintColumn& sense, const LintNames& names,
                         LintFindings& findings) {

@@ -11,4 +11,8 @@ namespace vernier::lint {
 void look_at_directions(const LintTable& table, const LintColumn& sense, const LintNames& names,
                         LintFindings& findings);
 
+/// Adds a remark for each axis that reaches the same positions from both sides, by the order of the rows, in
+/// a file without its column of directions.
+void look_for_missing_directions(const LintTable& table, const LintNames& names, LintFindings& findings);
+
 }  // namespace vernier::lint

@@ -8,6 +8,7 @@
 #include "tools/format/columns.h"
 #include "tools/lint/machine_lint.h"
 #include "tools/lint/measurement_lint.h"
+#include "tools/model/measurement.h"
 #include "tools/sheet/encoding.h"
 #include "tools/sheet/sheet.h"
 #include "tools/text/files.h"
@@ -63,6 +64,41 @@ void compare_uncertainties(std::vector<LintedFile>& files) {
     }
 }
 
+/// Warns about measurement files without the directions of an axis that moves in them, beside files with
+/// them.
+void compare_directions(const model::Machine& machine, const std::vector<std::string>& bytes,
+                        std::vector<LintedFile>& files) {
+  std::vector<std::size_t> usable;
+  std::vector<model::Measurement> rows;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (files[i].kind == LintedKind::kMeasurement && files[i].usable) {
+      usable.push_back(i);
+      rows.push_back(model::parse_measurement(bytes[i], files[i].file, machine));
+    }
+  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
+    const auto has = [&](const model::Measurement& m) { return (m.states.direction[axis] != 0).any(); };
+    const auto with = std::find_if(rows.begin(), rows.end(), has);
+    if (with == rows.end()) continue;
+    const std::string sense = format::axis_column(format::AxisQuantity::kSense, machine.axes[axis].name);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const model::Column& position = rows[k].states.axis[axis];
+      if (has(rows[k]) || position.minCoeff() == position.maxCoeff()) continue;
+      LintFinding warning;
+      warning.file = files[usable[k]].file;
+      warning.weight = LintWeight::kWarning;
+      warning.word = sense;
+      warning.what = fmt::format(
+          "no {} in the file, and {} has it: the model predicts no reversal error (backlash) for these rows, "
+          "so that they contradict one",
+          sense, text::printable(files[usable[static_cast<std::size_t>(with - rows.begin())]].file));
+      warning.meaning =
+          "if the rows are in the order of the measurement, import the file again with the directions of the "
+          "motion (import table --directions from-order)";
+      files[usable[k]].findings.push_back(std::move(warning));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<LintedFile> lint_files(const std::vector<std::string>& paths) {
@@ -86,6 +122,7 @@ std::vector<LintedFile> lint_files(const std::vector<std::string>& paths) {
     });
   }
   if (!machine || !machine->instrument) compare_uncertainties(list);
+  if (machine) compare_directions(*machine, bytes, list);
   return list;
 }
 

@@ -41,6 +41,7 @@ class Meaning {
     for (const LintColumn& column : table_.columns)
       if (names_.is_of_axis(column.name, format::AxisQuantity::kSense))
         look_at_directions(table_, column, names_, findings_);
+    look_for_missing_directions(table_, names_, findings_);
     look_at_signs_of_runs(table_, names_, findings_);
     look_at_normals();
     look_at_repeats();

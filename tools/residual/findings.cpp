@@ -448,6 +448,7 @@ class Describer {
       if (!constant) from += one.term.subject.size();
       curves_.push_back(curve);
     }
+    limit_curves();
   }
 
   Finding finding(std::size_t at) const {
@@ -485,6 +486,27 @@ class Describer {
   }
 
  private:
+  /// Range of the values of a weighted column, without the weight.
+  double reach(const Eigen::VectorXd& weighted) const {
+    const Eigen::VectorXd values = weighted.cwiseQuotient(sample_.weight);
+    return values.maxCoeff() - values.minCoeff();
+  }
+
+  /// Two terms of nearly equal columns can cancel each other: each is then larger than anything in the
+  /// residual. Such a term is described as it fits the residual alone.
+  void limit_curves() {
+    const double most = reach(search_.held());
+    for (std::size_t i = 0; i < taken_.size(); ++i) {
+      if (taken_[i].term.shape == Shape::kConstant || reach(curves_[i]) <= most) continue;
+      maths::FunctionSet alone{0};
+      alone.insert(alone.end(), taken_[i].term.subject.begin(), taken_[i].term.subject.end());
+      const Eigen::VectorXd beta = maths::coefficients(search_.moments(), alone);
+      curves_[i].setZero();
+      for (std::size_t k = 1; k < alone.size(); ++k)
+        curves_[i] += search_.matrix().col(alone[k]) * beta[static_cast<Eigen::Index>(k)];
+    }
+  }
+
   /// The shorter periods that give the same readings, if the positions are multiples of one step: the
   /// frequencies 1/step - f and 1/step + f.
   void find_aliases(const Taken& one, Finding& f, SentenceFacts& facts) const {

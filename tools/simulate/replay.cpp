@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include "tools/format/columns.h"
 #include "tools/model/chain/prediction.h"
@@ -15,10 +18,9 @@ namespace {
 /// when it is needed, because a record of hours has ten million.
 class BetweenRows : public TickPath {
  public:
-  BetweenRows(const model::Machine& machine, const model::Measurement& m, std::size_t run, double period_s)
-      : machine_(machine), m_(m), period_s_(period_s) {
-    for (std::size_t row = 0; row < m.rows(); ++row)
-      if (m.states.run[row] == run) rows_.push_back(row);
+  BetweenRows(const model::Machine& machine, const model::Measurement& m, std::vector<std::size_t> rows,
+              double period_s)
+      : machine_(machine), m_(m), period_s_(period_s), rows_(std::move(rows)) {
     for (std::size_t i = 1; i < rows_.size(); ++i)
       if (time_at(i) <= time_at(i - 1))
         throw text::InputError({m.files[m.file[rows_[i]]], m.line[rows_[i]]}, format::columns::kTime,
@@ -31,7 +33,6 @@ class BetweenRows : public TickPath {
     one_ = model::select_states(m.states, {rows_.front()});
   }
 
-  const std::vector<std::size_t>& rows() const { return rows_; }
   /// Index of a row's correction among the stored ones.
   std::vector<Eigen::Index> kept_of_rows() const {
     std::vector<Eigen::Index> kept;
@@ -117,33 +118,54 @@ void add_loop(const LoopResult& loop, std::size_t ticks, ReplayResult& result) {
   result.not_active += loop.not_active;
 }
 
+/// The rows of each run. A file without times beside files with times has runs of its own (its clock).
+std::vector<std::vector<std::size_t>> rows_of_runs(const model::Measurement& m) {
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> runs;
+  for (std::size_t row = 0; row < m.rows(); ++row)
+    runs[{m.states.run[row], m.states.of(m.states.clock, row)}].push_back(row);
+  std::vector<std::vector<std::size_t>> list;
+  for (auto& [labels, rows] : runs) list.push_back(std::move(rows));
+  return list;
+}
+
+/// False for rows without times: poses at rest.
+bool has_times(const model::Measurement& m, const std::vector<std::size_t>& rows) {
+  const auto time_of = [&](std::size_t row) { return m.states.time[static_cast<Eigen::Index>(row)]; };
+  return m.has_recorded(format::columns::kTime) &&
+         (rows.size() < 2 || std::any_of(rows.begin(), rows.end(), [&](std::size_t row) {
+            return time_of(row) != time_of(rows.front());
+          }));
+}
+
 }  // namespace
 
 ReplayResult replay(const compile::LoadedImage& image, const model::Measurement& m,
                     const LoopOptions& options) {
-  const bool timed = m.has_recorded(format::columns::kTime);
-  if (!timed && needs_time(image.view))
-    throw text::InputError({m.files.front(), 0}, format::columns::kTime,
-                           "replay needs this column: a term of the machine depends on time");
   const double period_s = 1e-6 * image.view.header().tick_us;
   model::Measurement corrected = m;
   ReplayResult result;
-  for (std::size_t row = 0; !timed && row < m.rows(); ++row) {
-    const LoopResult loop =
-        run_loop(image.view, image.machine, model::select_states(m.states, {row}), options);
-    add_loop(loop, 1, result);
+  const auto move = [&](std::size_t row, const LoopResult& loop, Eigen::Index tick) {
     for (std::size_t axis = 0; axis < image.machine.axes.size(); ++axis)
-      corrected.states.axis[axis][static_cast<Eigen::Index>(row)] += loop.correction[axis][0];
-  }
-  for (std::size_t run = 0; timed && run < m.states.run_names.size(); ++run) {
-    const BetweenRows path(image.machine, m, run, period_s);
-    const LoopResult loop = run_loop(image.view, image.machine, path, options);
-    add_loop(loop, path.count(), result);
-    const std::vector<Eigen::Index> kept = path.kept_of_rows();
-    for (std::size_t i = 0; i < kept.size(); ++i)
-      for (std::size_t axis = 0; axis < image.machine.axes.size(); ++axis)
-        corrected.states.axis[axis][static_cast<Eigen::Index>(path.rows()[i])] +=
-            loop.correction[axis][kept[i]];
+      corrected.states.axis[axis][static_cast<Eigen::Index>(row)] += loop.correction[axis][tick];
+  };
+  for (const std::vector<std::size_t>& rows : rows_of_runs(m)) {
+    if (has_times(m, rows)) {
+      const BetweenRows path(image.machine, m, rows, period_s);
+      const LoopResult loop = run_loop(image.view, image.machine, path, options);
+      add_loop(loop, path.count(), result);
+      const std::vector<Eigen::Index> kept = path.kept_of_rows();
+      for (std::size_t i = 0; i < kept.size(); ++i) move(rows[i], loop, kept[i]);
+      continue;
+    }
+    if (needs_time(image.view))
+      throw text::InputError({m.files[m.file[rows.front()]], 0}, format::columns::kTime,
+                             "replay needs this column: a term of the machine depends on time");
+    for (const std::size_t row : rows) {
+      const LoopResult loop =
+          run_loop(image.view, image.machine, model::select_states(m.states, {row}), options);
+      add_loop(loop, 1, result);
+      move(row, loop, 0);
+    }
   }
   model::Machine nominal = model::nominal_machine(image.machine);
   nominal.base_shifts = image.machine.base_shifts;

@@ -23,9 +23,9 @@ struct ReplayResult {
 /// Runs the firmware along every run of a measurement, tick by tick between the rows (positions, motion and
 /// inputs are linear between rows; a direction keeps its value). The function replay() changes each reading
 /// by the effect of the correction on the nominal machine: reading' = reading + nominal(q + correction) -
-/// nominal(q). The times in column t must increase within each run. If the file has no column t, every row is
-/// a pose at rest. If the file has no time column, no term of the image may depend on time. Throws InputError
-/// if the column t is missing although a term depends on time.
+/// nominal(q). The times in column t must increase within each run. In a file without a column t, also beside
+/// files with one, every row is a pose at rest, and no term of the image may depend on time: otherwise
+/// replay() throws InputError.
 ReplayResult replay(const compile::LoadedImage& image, const model::Measurement& measurement,
                     const LoopOptions& options);
 

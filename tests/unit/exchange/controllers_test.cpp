@@ -402,6 +402,11 @@ $AA_ENC_COMP_IS_MODULO[0,AX1]=0
 $MA_BACKLASH[0,AX1]=0.005999
 M17
 )");
+  // The model has no reversal error of Y: 0 is not written without a word.
+  const auto siemens = export_of(Controller::kSiemens, kSmall, 100).files;
+  EXPECT_EQ(siemens.at("AX1_EEC.INI").find("no reversal error"), std::string::npos);
+  EXPECT_NE(siemens.at("AX3_EEC.INI").find("; The model has no reversal error of Z: the next value switches"),
+            std::string::npos);
   EXPECT_EQ(export_of(Controller::kHeidenhain, kSmall, 100).files.at("X.COM"),
             R"(BEGIN X.COM MM
 NR   AXISPOS     BACKLASH    X          Y          Z

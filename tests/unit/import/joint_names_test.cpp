@@ -72,5 +72,12 @@ TEST(JointColumns, OfALinearAxisHaveALength) {
   EXPECT_THAT(words({{"J1", true}, {"J2", false}}, columns({"q1", "q2"}, "deg")), ElementsAre("none"));
 }
 
+TEST(JointSeries, IsANameWithConsecutiveNumbers) {
+  EXPECT_EQ(joint_series({"Nr", "A1", "A2", "A3", "A4", "A5", "A6", "X", "Y"}), "A1 to A6");
+  EXPECT_EQ(joint_series({"q_0", "q_1", "q_2", "q_3", "q_4", "q_5"}), "q_0 to q_5");
+  EXPECT_EQ(joint_series({"T1", "T2", "T3", "T4"}), "") << "thermometers";
+  EXPECT_EQ(joint_series({"P10", "P11", "P12", "P13", "P14"}), "") << "points";
+}
+
 }  // namespace
 }  // namespace vernier::joint_names_test

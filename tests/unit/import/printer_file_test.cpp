@@ -187,25 +187,38 @@ TEST(PrinterFile, LevellingAndRepeatsAreNoSurveyOfTheBed) {
   EXPECT_THAT(read(two), HasSubstr("1 (1 touches from line 1), 2 (1 touches from line 3); choose one with "
                                    "--series"));
   PrinterOptions options;
-  options.series = 2;
+  options.series = 2u;
   EXPECT_EQ(read(two, options), "X[mm],Y[mm],Z[mm],on\n1,2,4,bed\n");
-  options.series = 3;
+  options.series = 3u;
   EXPECT_THAT(read(two, options), HasSubstr("the log has no survey of this number"));
+  options.series = PrinterOptions::Survey::kAll;
+  EXPECT_EQ(read(two, options), "X[mm],Y[mm],Z[mm],on\n1,2,3,bed\n1,2,4,bed\n");
 }
 
 TEST(PrinterFile, SurveysAtSeveralTemperaturesAreOneTableUnlessOneIsChosen) {
-  std::string log;
-  for (const char* const heat : {"25.0", "60.0"}) {
-    log += std::string("Stats 10.0: heater_bed: target=60 temp=") + heat + "\n";
-    for (const char* const point : {"0,0", "9,0", "9,9", "0,9"})
-      log += std::string("probe at ") + point + " is z=" + heat + "\n";
-  }
+  const auto log_of = [](const std::vector<std::string>& heats, const std::string& end) {
+    std::string log;
+    for (const std::string& heat : heats) {
+      log += "Stats 10.0: heater_bed: target=60 temp=" + heat + "\n";
+      for (const char* const point : {"0,0", "9,0", "9,9", "0,9"})
+        log += std::string("probe at ") + point + " is z=" + heat + "\n";
+      log += end;
+    }
+    return log;
+  };
+  const std::string log = log_of({"25.0", "60.0"}, "");
   PrinterOptions options;
+  // A line that ends each survey changes nothing; at one temperature the screws may have been turned.
+  const std::string end = "Mesh Bed Leveling Complete\n";
+  const PrinterFile ended = read_printer_file(log_of({"25.0", "60.0", "90.0"}, end), "klippy.log", options);
+  EXPECT_EQ(ended.table.line.size(), 12u);
+  EXPECT_THAT(ended.surveys, HasSubstr("3 (4 touches from line 14, bed at 90 degC)"));
+  EXPECT_THAT(read(log_of({"25.0", "60.0", "60.4"}, end), options), HasSubstr("choose one with --series"));
   const PrinterFile both = read_printer_file(log, "klippy.log", options);
   EXPECT_EQ(both.table.line.size(), 8u);
   EXPECT_EQ(both.surveys,
             "1 (4 touches from line 2, bed at 25 degC), 2 (4 touches from line 7, bed at 60 degC)");
-  options.series = 2;
+  options.series = 2u;
   const PrinterFile hot = read_printer_file(log, "klippy.log", options);
   EXPECT_EQ(hot.table.line.size(), 4u);
   EXPECT_EQ(hot.table.numbers("Z").front(), 60);

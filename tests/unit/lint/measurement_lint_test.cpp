@@ -2,6 +2,7 @@
 #include "tools/lint/measurement_lint.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -349,6 +350,44 @@ TEST(MeasurementLint, ReportsDirectionsAgainstTheOrderOfTheRows) {
 }
 
 // A file of one long word was printed whole, with its terminal sequences.
+TEST(MeasurementLint, PositionsReachedFromBothSidesNeedDirections) {
+  const auto said = [](const std::string& rows) {
+    for (const LintFinding& one : lint_measurement(rows, "m.csv", nullptr))
+      if (one.what.find("from both sides of X") != std::string::npos) return in_one_line(one);
+    return std::string();
+  };
+  const std::string there = "0,0\n50,50\n100,100\n150,150\n", back = "200,200\n150,150\n100,100\n50,50\n";
+  EXPECT_THAT(
+      said("X[mm],x[mm]\n" + there + back),
+      testing::HasSubstr("the rows reach 3 positions from both sides of X, and the file has no dirX"));
+  EXPECT_EQ(said("X[mm],x[mm]\n" + there + there + there), "") << "the way back has no readings";
+  EXPECT_EQ(said("X[mm],x[mm]\n" + there + "120,120\n70,70\n20,20\n"), "") << "other positions";
+  EXPECT_EQ(said("X[mm],dirX,x[mm]\n0,0,0\n50,1,50\n100,1,100\n150,1,150\n200,1,200\n150,-1,150\n"
+                 "100,-1,100\n50,-1,50\n"),
+            "");
+}
+
+TEST(Lint, AFileWithoutDirectionsBesideAFileWithThemIsAWarning) {
+  const std::string folder = testing::TempDir();
+  const std::string with = folder + "/with_sense.csv", without = folder + "/without_sense.csv",
+                    still = folder + "/still.csv", axes = folder + "/axes.xml";
+  text::write_file(
+      axes,
+      R"(<machine><variables><machineaxes><X min="0" max="600"/><Y min="0" max="400"/></machineaxes>
+                   </variables><transforms><sixdof X="X" Y="Y"/></transforms></machine>)");
+  text::write_file(with, "X[mm],Y[mm],dirX,x[mm],u[um]\n0,0,1,0,1\n100,0,1,100,1\n0,0,-1,0,1\n");
+  text::write_file(without, "X[mm],Y[mm],x[mm],u[um]\n0,0,0,1\n100,200,100,1\n");
+  text::write_file(still, "X[mm],Y[mm],y[mm],u[um]\n5,0,0,1\n5,200,200,1\n");
+  const auto warned = [](const LintedFile& file) {
+    return std::any_of(file.findings.begin(), file.findings.end(),
+                       [](const LintFinding& one) { return one.word == "dirX"; });
+  };
+  const std::vector<LintedFile> files = lint_files({axes, with, without, still});
+  EXPECT_FALSE(warned(files[1]));
+  EXPECT_TRUE(warned(files[2]));
+  EXPECT_FALSE(warned(files[3])) << "X stood still";
+}
+
 TEST(LintLine, QuotesAShortWordAndNoControlCharacter) {
   LintFinding finding;
   finding.file = "a\033[31m.csv";

@@ -117,6 +117,30 @@ TEST(FailurePicture, WhiteResidualRaisesNoAlarm) {
   EXPECT_LE(with_findings, count * 0.03 + 4 * std::sqrt(count * 0.03));
 }
 
+TEST(FailurePicture, NoFindingIsLargerThanTheResidual) {
+  // The temperature follows the direction within a tenth, and their errors of 0.1 mm cancel each other.
+  const Machine machine = parse_machine(kMachine, "m.xml");
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal;
+  std::string text = "X[mm],Y[mm],Z[mm],dirX,T[degC],x[mm],y[mm],z[mm]\n";
+  constexpr int kRows = 200;
+  Eigen::VectorXd error(kRows);
+  for (int i = 0; i < kRows; ++i) {
+    const double sense = i % 2 == 0 ? 1 : -1, like = sense + 0.1 * normal(random);
+    text += std::to_string(i) + ",0,0," + std::to_string(static_cast<int>(sense)) + "," +
+            std::to_string(20 + 5 * like) + ",0,0,0\n";
+    error[i] = 0.1 * (sense - 0.9 * like);
+  }
+  const Measurement m = parse_measurement(text, "survey", machine);
+  Eigen::VectorXd residual = white(m, 1e-3, random);
+  plant(residual, m, ObservationKind::kX, [&](Eigen::Index row) { return error[row]; });
+  const FailurePicture picture = failure_picture(machine, m, residual);
+  ASSERT_FALSE(picture.findings.empty());
+  const double reach = 1e3 * (error.maxCoeff() - error.minCoeff());
+  for (const Finding& one : picture.findings)
+    EXPECT_LE(one.high_um - one.low_um, 1.2 * reach) << one.sentence;
+}
+
 TEST(FailurePicture, ResidualOfAFitWithManyParametersRaisesNoAlarm) {
   // Noise from which a bridge's tables (about 100 parameters) have been fitted, with and without its
   // Jacobian.

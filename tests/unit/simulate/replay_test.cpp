@@ -66,6 +66,25 @@ TEST(Replay, NeedsTimeWhereATermGoesWithIt) {
   EXPECT_LT(replayed(machine_text("+c*lag(T-20,300)"), 30).after.cwiseAbs().maxCoeff(), 1e-4);
 }
 
+TEST(Replay, AFileWithoutTimesIsStoodAtBesideAFileWithTimes) {
+  const std::string text = machine_text("");
+  const Machine machine = parse_machine(text, "m.xml");
+  const auto image = load_image(compile_machine(machine, text, {}).image, machine);
+  for (const bool timed_first : {true, false}) {
+    Measurement both = readings(text, timed_first ? 2 : 0);
+    append_measurement(both, readings(text, timed_first ? 0 : 2));
+    const ReplayResult result = replay(*image, both, {});
+    EXPECT_EQ(result.ticks, 29U * 2000 + 1 + 30);
+    EXPECT_LT(result.after.cwiseAbs().maxCoeff(), 2e-6);
+  }
+  const std::string lagging = machine_text("+c*lag(T-20,300)");
+  Measurement both = readings(lagging, 2);
+  append_measurement(both, readings(lagging, 0));
+  const Machine slow = parse_machine(lagging, "m.xml");
+  const auto slow_image = load_image(compile_machine(slow, lagging, {}).image, slow);
+  EXPECT_THROW(replay(*slow_image, both, {}), InputError);
+}
+
 TEST(Replay, NeedsATimeThatGrows) {
   const std::string text = machine_text("");
   const Machine machine = parse_machine(text, "m.xml");

@@ -2,18 +2,23 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <string_view>
 
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
 #include "tools/import/logs/printer_file.h"
 #include "tools/sheet/encoding.h"
 #include "tools/text/files.h"
+#include "tools/text/numbers.h"
 
 namespace vernier::commands::import_cli {
 namespace {
 
+constexpr std::string_view kAllSurveys = "all";
+
 struct PrinterArguments {
   std::string file;
+  std::string series;  // number of a survey, or kAllSurveys
   std::string twist = "included";
   std::vector<double> offset;
   importer::PrinterOptions options;
@@ -38,6 +43,10 @@ void run_printer(PrinterArguments& arguments) {
   arguments.options.twist = arguments.twist == "add"      ? Twist::kAdd
                             : arguments.twist == "ignore" ? Twist::kIgnore
                                                           : Twist::kIncluded;
+  if (arguments.series == kAllSurveys)
+    arguments.options.series = importer::PrinterOptions::Survey::kAll;
+  else if (!arguments.series.empty())
+    arguments.options.series = *text::parse_count(arguments.series);
   const importer::PrinterFile read = importer::read_printer_file(
       sheet::utf8_text(text::read_file(arguments.file)), arguments.file, arguments.options);
   text::write_file(arguments.output.csv_path, importer::measurement_csv(read.table));
@@ -76,8 +85,8 @@ void run_printer(PrinterArguments& arguments) {
   if (!read.surveys.empty())
     fmt::print(
         out,
-        "note: the log has surveys of the bed at several temperatures, which are read as one table: {}; "
-        "to read one of them, give --series with its number\n",
+        "note: the log has several surveys of the bed, which are read as one table: {}; to read one of "
+        "them (if the screws of the bed were turned between them), give --series with its number\n",
         read.surveys);
   if (read.not_probed > 0)
     fmt::print(out, "{} points of the height map have no reading and are omitted\n", read.not_probed);
@@ -112,9 +121,14 @@ void add_printer_kind(CLI::App& kind) {
                   "them), add (the touches are older: the command adds them), or ignore")
       ->check(CLI::IsMember({"included", "add", "ignore"}))
       ->capture_default_str();
-  kind.add_option("--series", arguments->options.series,
-                  "number of the survey of the bed, from 1, if a log has several, or the bed at several "
-                  "temperatures");
+  kind.add_option(
+          "--series", arguments->series,
+          "number of the survey of the bed, from 1, if a log has several, or all: read them as one table; "
+          "default: all if the temperature differs from survey to survey")
+      ->check([](const std::string& word) {
+        const bool known = word == kAllSurveys || text::parse_count(word);
+        return known ? std::string() : "give the number of a survey, or all";
+      });
   kind.add_option("--u", arguments->options.u_um, "standard uncertainty of a touch, um")
       ->check(CLI::PositiveNumber);
   add_import_output(kind, arguments->output);

@@ -19,6 +19,7 @@ struct NewArguments {
   std::string type, output, measurements, json, name, tool, dh, urdf, tip, reading = "point", errors = "all";
   std::string tool_side, work_side;
   std::vector<std::string> axes, centres, joints, artefacts, stations;
+  bool reflector = false;
 };
 
 /// Names the types of machines in the help. It accepts any word: plan_machine gives a reason for a delta.
@@ -120,6 +121,7 @@ create::MachinePlan plan_of(const NewArguments& arguments, const CLI::App& comma
   if (!arguments.name.empty()) plan.name = arguments.name;
   plan.positioning_only = arguments.errors == "positioning";
   plan.square_only = arguments.errors == "square";
+  plan.reflector = arguments.reflector;
   if (!plan.arm.empty() && !arguments.stations.empty())
     throw text::InputError("--stations: this option is not for the type robot, whose axes have no tables");
   for (const std::string& words : arguments.stations) create::plan_stations(plan.axes, words);
@@ -224,6 +226,9 @@ void register_new(CLI::App& vernier) {
           "NAME:TYPE: an object that the tool point touches (column on), of type point, line, plane, "
           "sphere or cylinder: bed:plane for the bed of a 3D printer; repeat for each object")
       ->allow_extra_args(false);
+  command->add_flag("--reflector", arguments->reflector,
+                    "the readings are those of a reflector at an unknown place on the tool: this place is "
+                    "estimated (ToolShift), and is no error of the machine");
   command->add_option("--tool", arguments->tool,
                       "tool point in the frame of the last axis that carries the tool, mm: 0,0,-120");
   command->add_option("--name", arguments->name, "name of the machine");

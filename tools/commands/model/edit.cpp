@@ -47,7 +47,23 @@ void run_exclude(const ExcludeArguments& arguments) {
 struct SetArguments {
   std::string machine, output, json;
   std::vector<std::string> values, artefacts;
+  bool reflector = false;
 };
+
+/// The machine text with <ToolShift/> at the end of <static>.
+std::string with_reflector(const std::string& text, const SetArguments& arguments) {
+  if (!arguments.reflector) return text;
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+  const pugi::xml_node statics = effects::element_named(document, "static");
+  if (!statics)
+    throw text::InputError({arguments.machine, 0}, "static",
+                           "the machine file has no <static> element; add one");
+  if (!model::parse_machine(text, arguments.machine).tool_shifts.empty())
+    throw text::InputError({arguments.machine, 0}, "ToolShift",
+                           "the machine file already declares what is at an unknown place on the tool");
+  return text::apply_edits(text, {effects::at_end_of(text, statics, create::kReflectorLine)});
+}
 
 /// The machine text with artefacts "NAME:TYPE" at the end of <variables>.
 std::string with_artefacts(const std::string& text, const SetArguments& arguments) {
@@ -68,9 +84,10 @@ std::string with_artefacts(const std::string& text, const SetArguments& argument
 }
 
 void run_set(const SetArguments& arguments) {
-  if (arguments.values.empty() && arguments.artefacts.empty())
-    throw text::InputError("set: give a value (NAME=NUMBER) or --artefact NAME:TYPE");
-  const std::string text = with_artefacts(text::read_file(arguments.machine), arguments);
+  if (arguments.values.empty() && arguments.artefacts.empty() && !arguments.reflector)
+    throw text::InputError("set: give a value (NAME=NUMBER), --artefact NAME:TYPE or --reflector");
+  const std::string text =
+      with_reflector(with_artefacts(text::read_file(arguments.machine), arguments), arguments);
   model::Machine machine = model::parse_machine(text, arguments.machine);
   std::map<std::string, double> values;
   for (const std::string& word : arguments.values) {
@@ -81,13 +98,18 @@ void run_set(const SetArguments& arguments) {
   }
   workbench::set_values(machine, values);
   text::write_file(arguments.output, values.empty() ? text : model::update_machine_text(text, machine, true));
-  nlohmann::ordered_json json = {
-      {"machine", arguments.output}, {"values", values}, {"artefacts", arguments.artefacts}};
+  nlohmann::ordered_json json = {{"machine", arguments.output},
+                                 {"values", values},
+                                 {"artefacts", arguments.artefacts},
+                                 {"reflector", arguments.reflector}};
   write_json(arguments.json, json);
   for (const auto& [name, value] : values)
     fmt::print(human_stream(arguments.json), "{} = {:.10g}\n", name, value);
   for (const std::string& words : arguments.artefacts)
     fmt::print(human_stream(arguments.json), "artefact {} declared\n", words);
+  if (arguments.reflector)
+    fmt::print(human_stream(arguments.json),
+               "unknown place of the reflector on the tool declared (ToolShift): a fit estimates it\n");
 }
 
 }  // namespace
@@ -130,6 +152,9 @@ void register_set(CLI::App& vernier) {
           "touched object to declare in the machine: NAME:TYPE, such as bed:plane; types: point, line, "
           "plane, sphere, cylinder; may be repeated")
       ->allow_extra_args(false);
+  command->add_flag("--reflector", arguments->reflector,
+                    "the readings are those of a reflector at an unknown place on the tool: declare this "
+                    "place (ToolShift), which a fit estimates, and which is no error of the machine");
   command->add_option("-o,--output", arguments->output, "the new machine file")
       ->type_name(kWrites)
       ->required();

@@ -164,7 +164,8 @@ Json page_of(const Json& json) {
   if (measured) {
     sections.push_back(line_section("Diagonals",
                                     "Readings of a laser along the diagonals (ISO 230-6), one run "
-                                    "in each approach direction.",
+                                    "in each approach direction. The last position is reached from one side "
+                                    "only: both runs have one value there.",
                                     "Body and face diagonals", json["diagonals"]));
     sections.push_back(line_section(
         "Axes",

@@ -100,6 +100,17 @@ void print_tables(const ExchangeArguments& common, const exchange::ControllerTab
     if (tables.between_um[i] > common.tolerance_um)
       fmt::print(out, "note: the error between the points of {} is {:.3g} um, the tolerance is {} um\n",
                  exchange::kLetters[i], tables.between_um[i], common.tolerance_um);
+  std::string without_reversal;
+  for (const exchange::ControllerTable& table : tables.tables)
+    if (table.input == table.output && tables.reversal[table.input] == 0)
+      without_reversal +=
+          (without_reversal.empty() ? "" : ", ") + std::string(exchange::kLetters[table.input]);
+  if (!without_reversal.empty())
+    fmt::print(
+        out,
+        "note: the model has no reversal error of {}: the files set the backlash of the control to 0. If "
+        "the control compensated a backlash in the measurement, keep its value\n",
+        without_reversal);
   for (std::size_t i = 0; i < 3; ++i)
     if (errors.after_um[i] > errors.before_um[i] + exchange::kNothing_um)
       fmt::print(out, "note: the files increase the largest error along {} from {:.3g} to {:.3g} um\n",

@@ -55,6 +55,11 @@ std::string enc_comp(const ControllerTables& tables, const ControllerTable& tabl
                       table.from);
   text += fmt::format("$AA_ENC_COMP_MAX[0,{0}]={1:.6f}\n$AA_ENC_COMP_IS_MODULO[0,{0}]=0\n", axis,
                       table.position(count - 1));
+  if (tables.reversal[table.input] == 0)
+    text += fmt::format(
+        "; The model has no reversal error of {}: the next value switches a backlash compensation off. If\n"
+        "; the control compensated a backlash in the measurement, keep its value.\n",
+        kLetters[table.input]);
   text += fmt::format(
       "; Backlash, positive if the encoder is ahead of the machine part\n$MA_BACKLASH[0,{}]={:.6f}\n", axis,
       printed(tables.reversal[table.input]));

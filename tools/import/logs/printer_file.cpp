@@ -428,14 +428,9 @@ class ProbeLog {
     // One clock for all surveys of a log: the second survey of the bed does not begin at 0 s.
     const double begin = touches_.empty() ? 0 : touches_.front().t;
     for (Touch& one : touches_) one.t -= begin;
-    // Without a line that ends a survey, the log is one survey with a temperature, unless the user chooses.
+    // Without a line that ends a survey, the temperature alone tells the surveys.
     if (series_.size() < 2)
-      if (const auto ends = ends_by_temperature(); ends.size() > 1) {
-        if (options_.series)
-          series_ = ends;
-        else
-          result_.surveys = list_of(ends);
-      }
+      if (const auto ends = ends_by_temperature(); ends.size() > 1) series_ = ends;
     return chosen();
   }
 
@@ -525,18 +520,28 @@ class ProbeLog {
     return most;
   }
 
+  /// True if two surveys begin at the same point, at different temperatures.
+  static bool at_other_temperature(const Touch& begin, const Touch& other) {
+    constexpr double kSamePoint = 0.01;  // mm
+    constexpr double kHeated = 3;        // degC, above the control of a heater
+    return std::abs(other.axes[0] - begin.axes[0]) <= kSamePoint &&
+           std::abs(other.axes[1] - begin.axes[1]) <= kSamePoint && heated(begin, other) >= kHeated;
+  }
+
+  /// True if the surveys are of one bed that is heated: each has another temperature than the one before it.
+  bool differ_by_temperature() const {
+    for (std::size_t k = 1; k < series_.size(); ++k)
+      if (!at_other_temperature(touches_[begin_of(k - 1)], touches_[begin_of(k)])) return false;
+    return true;
+  }
+
   /// Ends of the surveys: a touch at the first point of a survey again, at another temperature.
   std::vector<std::size_t> ends_by_temperature() const {
-    constexpr double kSamePoint = 0.01;        // mm
-    constexpr double kHeated = 3;              // degC, above the control of a heater
     constexpr std::size_t kFewestTouches = 4;  // of a survey of a bed
     std::vector<std::size_t> ends;
     std::size_t first = 0;
     for (std::size_t i = 1; i < touches_.size(); ++i) {
-      const Touch &begin = touches_[first], &one = touches_[i];
-      if (i - first < kFewestTouches || std::abs(one.axes[0] - begin.axes[0]) > kSamePoint ||
-          std::abs(one.axes[1] - begin.axes[1]) > kSamePoint || heated(begin, one) < kHeated)
-        continue;
+      if (i - first < kFewestTouches || !at_other_temperature(touches_[first], touches_[i])) continue;
       ends.push_back(i);
       first = i;
     }
@@ -559,24 +564,29 @@ class ProbeLog {
     return list;
   }
 
-  /// The touches of the series that the user names, or of the only one.
-  std::vector<Touch> chosen() const {
-    if (series_.size() < 2 && !options_.series) return touches_;
+  /// The touches of the survey that the user names; without a name those of all surveys, if there is one or
+  /// if their temperatures tell them apart.
+  std::vector<Touch> chosen() {
+    using Survey = PrinterOptions::Survey;
     const std::string list = list_of(series_);
-    if (!options_.series)
+    if (const auto* const number = std::get_if<std::size_t>(&options_.series)) {
+      if (*number < 1 || *number > series_.size())
+        throw text::InputError(
+            {file_, 0}, std::to_string(*number),
+            fmt::format("the log has no survey of this number: the surveys of the bed are {}",
+                        list.empty() ? "none" : list));
+      return {touches_.begin() + static_cast<std::ptrdiff_t>(begin_of(*number - 1)),
+              touches_.begin() + static_cast<std::ptrdiff_t>(series_[*number - 1])};
+    }
+    if (series_.size() < 2) return touches_;
+    if (std::get<Survey>(options_.series) != Survey::kAll && !differ_by_temperature())
       throw text::InputError(
           {file_, touches_[series_[0]].line}, "touches",
-          fmt::format(
-              "the log has several surveys of the bed, which may differ: {}; choose one with --series",
-              list));
-    if (*options_.series < 1 || *options_.series > series_.size())
-      throw text::InputError(
-          {file_, 0}, std::to_string(*options_.series),
-          fmt::format("the log has no survey of this number: the surveys of the bed are {}",
-                      list.empty() ? "none" : list));
-    const std::size_t k = *options_.series - 1, first = begin_of(k);
-    return {touches_.begin() + static_cast<std::ptrdiff_t>(first),
-            touches_.begin() + static_cast<std::ptrdiff_t>(series_[k])};
+          fmt::format("the log has several surveys of the bed, which may differ: {}; choose one with "
+                      "--series, or state --series all if the bed was not levelled between them",
+                      list));
+    result_.surveys = list;
+    return touches_;
   }
 
   PrinterFile& result_;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "tools/import/columns/column_map.h"
@@ -23,9 +25,11 @@ struct PrinterOptions {
     kIgnore     // the heights do not include the compensation, and the import does not add it
   };
   Twist twist = Twist::kIncluded;
-  std::optional<std::size_t> series;  // number of the survey in a log with several surveys, from
-                                      // 1; also of one that begins at its first point again at
-                                      // another temperature
+  enum class Survey : std::uint8_t {
+    kOnly,  // the only one of the log, or all of a bed at several temperatures
+    kAll    // all surveys of the log as one table
+  };
+  std::variant<Survey, std::size_t> series = Survey::kOnly;  // number of the survey in a log, from 1
 };
 
 /// Touches on the bed of a 3D printer.
@@ -38,8 +42,8 @@ struct PrinterFile {
   bool offset_known = true;              // false: a log of nozzle positions without a probe offset
   std::size_t not_probed = 0;            // number of positions of a height map without a reading
   std::size_t left_out = 0;              // number of touches in a log that the printer discarded
-  std::string surveys;                   // of a log that is read as one survey: the surveys at other
-                                         // temperatures that it seems to have; empty: none
+  std::string surveys;                   // of a log whose surveys are read as one table: the list of them;
+                                         // empty: the log has one, or the user chose one
   ImportTable table;                     // columns X[mm], Y[mm], Z[mm], on; probeX[mm] and probeY[mm] if the
                                          // probe has an offset; if known u, t[s], temperatures
 };
@@ -60,8 +64,8 @@ bool is_printer_file(const std::string& bytes);
 /// heights are those that the nozzle has at the touched point (PrinterOptions::twist): the position of the
 /// axes is then the touched point, and the table has no columns probeX and probeY. Touches during levelling,
 /// and repeated touches at one position (PROBE_ACCURACY), are excluded. If a log has several surveys of the
-/// bed, the option `series` is necessary. If the file is not valid, throws InputError with file, line and
-/// word.
+/// bed, and not their temperatures tell them apart, the option `series` is necessary. If the file is not
+/// valid, throws InputError with file, line and word.
 PrinterFile read_printer_file(const std::string& text, const std::string& file,
                               const PrinterOptions& options);
 

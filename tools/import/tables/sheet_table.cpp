@@ -16,6 +16,7 @@
 #include "tools/import/tables/assignments_to_try.h"
 #include "tools/import/tables/order_directions.h"
 #include "tools/import/tables/run_pairs.h"
+#include "tools/import/words/joint_names.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/dates.h"
 #include "tools/sheet/sheet_number.h"
@@ -278,6 +279,15 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
   }
   if (without.empty()) return;
   const bool one = units.size() == 1 && (doubt.empty() || !other_than_deviation);
+  std::vector<std::string> names;
+  for (const SheetColumn& column : columns)
+    if (column.unit.empty()) names.push_back(column.name);
+  const std::string joints = joint_series(names);
+  if (!joints.empty())
+    doubt += fmt::format(
+        "; if {} are the joints of a robot, give the machine file of the robot too (--machine MACHINE): the "
+        "command then states the call that assigns the columns to its axes",
+        joints);
   throw text::InputError(
       heading, "",
       fmt::format("no unit: give it for {}each, such as{}{}",

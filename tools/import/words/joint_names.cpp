@@ -149,6 +149,19 @@ JointColumns joint_columns(const std::vector<MissingAxis>& axes, const std::vect
   return {by_order(axes, columns), false, "by their order"};
 }
 
+std::string joint_series(const std::vector<std::string>& names) {
+  constexpr std::size_t kFewestJoints = 5;  // fewer numbered columns are runs or points as well
+  std::map<std::string, std::map<std::size_t, std::string>> families;
+  for (const std::string& name : names)
+    if (const auto found = numbered(name)) families[found->stem].emplace(found->number, name);
+  for (const auto& [stem, family] : families) {
+    const std::size_t first = family.begin()->first, last = family.rbegin()->first;
+    if (family.size() >= kFewestJoints && first < 2 && last - first + 1 == family.size())
+      return family.begin()->second + " to " + family.rbegin()->second;
+  }
+  return "";
+}
+
 std::string column_word(const MissingAxis& axis, const FreeColumn& column) {
   return axis.name + (column.unit.empty() ? axis.rotary ? "[deg]" : "[mm]" : "") + "=" + column.heading;
 }

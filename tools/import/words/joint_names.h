@@ -36,6 +36,10 @@ struct JointColumns {
 ///   exactly one numbered family has this size (actual_q_0 to actual_q_5): by their order.
 JointColumns joint_columns(const std::vector<MissingAxis>& axes, const std::vector<FreeColumn>& columns);
 
+/// Returns "A1 to A6" if names of columns are those of the joints of a robot: at least five of one name with
+/// consecutive numbers from 0 or 1. Empty: there are none.
+std::string joint_series(const std::vector<std::string>& names);
+
 /// Returns the word of the option --column that assigns a column to an axis: "J1=q1 [deg]". If the heading
 /// states no unit, the word has the unit of the axis.
 std::string column_word(const MissingAxis& axis, const FreeColumn& column);

@@ -25,8 +25,8 @@ struct Allowed {
 /// the project, or keep no result.
 constexpr Allowed kAllowed[] = {
     {"new", false, true,
-     "type axis stations tool-side work-side centre tool name urdf tip reading errors artefact output "
-     "measurements"},
+     "type axis stations tool-side work-side centre tool name urdf tip reading errors artefact reflector "
+     "output measurements"},
     {"import table", false, true,
      "file separator decimal skip table sheet unit sign column deviation leave set fill one-motion "
      "directions "
@@ -45,7 +45,7 @@ constexpr Allowed kAllowed[] = {
     {"evaluate iso230-2", false, false, "meas axis tolerance uncertainty header language output"},
     {"map", false, false, "machine grid correction inputs over lines header language output!"},
     {"add", false, true, "effect machine output"},
-    {"set", false, true, "machine values artefact output"},
+    {"set", false, true, "machine values artefact reflector output"},
     {"exclude", false, true, "meas lines! reason restore output!"},
     {"effects", false, false, ""},
     {"plan", false, false, "machine meas! separate! points confidence gcode output"},

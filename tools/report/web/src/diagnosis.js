@@ -2,7 +2,7 @@
 import { el, table, tiles } from './dom.js';
 import { number, printed } from './data.js';
 import { beforeAfter, ladder } from './plots.js';
-import { t } from './translate.js';
+import { sentencesOf, t } from './translate.js';
 
 const kVerdicts = {
   'missing-effect': (best) => `Missing: ${best ? title(best) : 'an effect'}${best?.effect === 'custom' ? ', no named physics' : ''}`,
@@ -33,6 +33,21 @@ const error = (label, result, key, strong) => {
   return { label, value: number(value, 4), unit, strong };
 };
 
+/** A text: many sentences as a list below the first one. */
+function sentences(text) {
+  const kOneParagraph = 3;
+  const list = sentencesOf(t(printed(text)));
+  if (list.length <= kOneParagraph) return el('p', {}, list.join(' '));
+  return [
+    el('p', {}, list[0]),
+    el(
+      'ul',
+      {},
+      list.slice(1).map((one) => el('li', {}, one)),
+    ),
+  ];
+}
+
 /** The verdict in words, with the numbers it rests on. */
 export function verdict(result) {
   const best = result.candidates?.[0];
@@ -48,7 +63,7 @@ export function verdict(result) {
   const second = typeof result.runner_up === 'string' ? result.runner_up : (result.runner_up?.said ?? result.runner_up?.effect);
   return [
     el('p', { class: `verdict ${result.verdict ?? ''}` }, words),
-    result.explanation ? el('p', {}, printed(result.explanation)) : null,
+    result.explanation ? sentences(result.explanation) : null,
     tiles(items),
     second
       ? el(

@@ -9,6 +9,8 @@ const kNumbers = new RegExp(kNumber, 'g'),
 // A sentence begins with a capital letter, a number, the name of a reading, or the name of a file.
 const kBetweenSentences = /(?<=[.!?]) (?=[A-Z\d]|distance |\S+\.\w+: the )/;
 
+export const sentencesOf = (text) => text.split(kBetweenSentences);
+
 let exact = new Map(),
   patterns = [],
   decimal = '.';
@@ -67,7 +69,7 @@ export function t(text) {
 function translated(words) {
   const whole = matched(words);
   if (whole !== words) return whole;
-  const sentences = words.split(kBetweenSentences);
+  const sentences = sentencesOf(words);
   return sentences.length > 1 ? sentences.map(matched).join(' ') : words;
 }
 

@@ -9,9 +9,10 @@ export const kDeclareBed =
 
 /**
  * Imports a file by a kind of `vernier import` that needs no table of columns: at once where it needs no further options, else its
- * options are asked for. `done(measurement)` is called with the name of the measurement file.
+ * options are asked for. `done(measurement)` is called with the name of the measurement file. `asks`: the options are asked for
+ * although none is missing.
  */
-export async function importInstrument(box, kind, name, done) {
+export async function importInstrument(box, kind, name, done, asks = false) {
   const command = `import ${kind}`,
     error = el('div', {}),
     fields = optionFields(command, ['file', 'files', 'output']);
@@ -32,24 +33,26 @@ export async function importInstrument(box, kind, name, done) {
       await done(output);
       return true;
     });
+  const later = (label) => button(label, () => box.replaceChildren(), { class: 'quiet' });
   function ask() {
-    box.replaceChildren(
+    // No option makes touches of a configuration without a saved mesh.
+    if (/has no touches/.test(error.textContent))
+      return box.replaceChildren(
+        panel(`There is nothing to import in ${name}`, error, el('p', {}, 'The file stays in the project.'), later('Close')),
+      );
+    return box.replaceChildren(
       panel(
         `How is ${name} to be read?`,
         error,
         el('div', { class: 'controls' }, fields.elements),
-        el(
-          'div',
-          { class: 'controls' },
-          button('Import', act, { id: 'do-import' }),
-          button('Not now', () => box.replaceChildren(), { class: 'quiet' }),
-        ),
+        el('div', { class: 'controls' }, button('Import', act, { id: 'do-import' }), later('Not now')),
       ),
     );
   }
   const missing = fields.required();
-  if (missing.length) {
+  if (missing.length || asks) {
     ask();
+    if (!missing.length) return;
     error.replaceChildren(el('p', { class: 'note' }, `State ${missing.map((one) => `"${one}"`).join(', ')}.`));
     return;
   }

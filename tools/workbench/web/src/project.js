@@ -9,7 +9,7 @@ import { loadRows } from './rows.js';
 import { importSheet } from './sheet.js';
 import { stoodPanel } from './stood.js';
 import { on, store } from './store.js';
-import { adviceOn, forget, kindAction, kindOf, kindOfName, kindWords } from './uses.js';
+import { adviceOn, forget, kindAction, kindOf, kindOfName, kindWords, readInto, sourceOf } from './uses.js';
 
 const size = (bytes) => (bytes < 10000 ? `${bytes} B` : bytes < 1e7 ? `${Math.round(bytes / 1000)} kB` : `${Math.round(bytes / 1e6)} MB`);
 
@@ -207,18 +207,19 @@ function fileRow(file, kind, act) {
   const differently =
     kind === 'measurement' ? button('read differently', () => act.differently(name), { class: 'quiet differently' }) : null;
   const chosen = name === store.machine || store.measurements.includes(name);
+  const made = label === 'import' ? readInto(name) : [];
   // A report is opened; anything else is saved under its name.
   const link = kind === 'report' ? { target: '_blank', rel: 'noopener' } : { download: name.replace(/.*\//, '') };
   return el(
     'tr',
     { class: chosen ? 'chosen' : null, 'data-file': name, 'data-kind': kind },
     el('td', { class: 'text' }, el('a', { href: fileAddress(name), ...link }, name)),
-    el('td', { class: 'text' }, kindWords(kind)),
+    el('td', { class: 'text' }, made.length ? kindWords(kind).replace('to be imported', `read into ${made.join(', ')}`) : kindWords(kind)),
     el('td', { class: 'num' }, size(file.bytes)),
     el(
       'td',
       { class: 'text' },
-      label ? button(label, () => act.use(name, kind), { class: 'quiet use' }) : null,
+      label ? button(made.length ? 'import again' : label, () => act.use(name, kind), { class: 'quiet use' }) : null,
       ' ',
       also,
       ' ',
@@ -320,10 +321,17 @@ export function projectView(root) {
     box.scrollIntoView({ block: 'nearest' });
   };
   const act = {
-    differently: (name) =>
-      byTable(name, (outputs) =>
-        choose(store.machine, [...new Set(store.measurements.flatMap((one) => (one === name ? outputs : [one])).concat(outputs))]),
-      ),
+    // What was dropped is read again, not the table that was made of it.
+    differently: async (name) => {
+      const source = sourceOf(name),
+        instead = (outputs) =>
+          choose(store.machine, [...new Set(store.measurements.flatMap((one) => (one === name ? outputs : [one])).concat(outputs))]);
+      const kind = source === name ? 'sheet' : await kindOfName(source);
+      if (kind === 'sheet' || kind === 'measurement') return byTable(source, instead);
+      const { importer } = store.files.find((one) => one.name === source);
+      await importInstrument(box, kind === 'trace' ? 'ballbar-trace' : (importer ?? kind), source, (output) => instead([output]), true);
+      return box.scrollIntoView({ block: 'nearest' });
+    },
     use: async (name, kind) => {
       error.replaceChildren();
       await use(name, kind, { box, repair: repair.values(), ask: error }).catch((why) => showError(error, why));

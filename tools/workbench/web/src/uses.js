@@ -26,6 +26,31 @@ const kKinds = {
 export const kindWords = (kind) => kKinds[kind][0];
 export const kindAction = (kind) => kKinds[kind][1];
 
+/** The words of a command of the history, without the quotes of a shell. */
+const wordsOf = (command) => [...command.matchAll(/'([^']*)'|[^\s']+/g)].map((match) => match[1] ?? match[0]);
+const stored = (name) => store.files.some((one) => one.name === name);
+/** The imports of the history that read or wrote a file, latest first: {read, written}, of files that are still there. */
+const importsOf = (name) =>
+  store.history
+    .filter((one) => !one.undone && /^import\b/.test(one.name))
+    .map((one) => ({
+      read: wordsOf(one.command).filter((word) => stored(word) && !(one.outputs ?? []).includes(word) && !/\.xml$/i.test(word)),
+      written: (one.outputs ?? []).filter(stored),
+    }))
+    .filter((one) => one.read.includes(name) || one.written.includes(name))
+    .reverse();
+
+/** The file of which an import made this measurement file; the file itself if nothing says so. */
+export const sourceOf = (name) => importsOf(name).find((one) => one.written.includes(name) && one.read.length)?.read[0] ?? name;
+/** The measurement files that imports made of a file. */
+export const readInto = (name) => [
+  ...new Set(
+    importsOf(name)
+      .filter((one) => one.read.includes(name))
+      .flatMap((one) => one.written),
+  ),
+];
+
 const kByName = [
   [/\.urdf$/i, 'robot'],
   [/\.json$/i, 'trace'],

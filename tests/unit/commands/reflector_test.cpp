@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A reflector at an unknown place on the tool of a robot is a part of the set-up, and no error to correct.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+
+#include "tools/model/chain/prediction.h"
+#include "tools/model/machine_reader.h"
+#include "tools/model/measurement.h"
+#include "tools/text/files.h"
+
+namespace vernier::reflector_test {
+
+using testing::HasSubstr;
+using testing::Not;
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kReflector_mm = 40, kU_mm = 0.02;
+
+/// 60 points of a UR10e with zero errors of its joints, and the reflector beside the tool point.
+std::string survey(std::string robot) {
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    ASSERT_NE(robot.find(from), std::string::npos) << from;
+    robot.replace(robot.find(from), from.size(), to);
+  };
+  replace("<TPX value=\"0\"", fmt::format("<TPX value=\"{}\"", kReflector_mm));
+  replace("<th2 value=\"0\"", "<th2 value=\"0.03\"");
+  replace("<th5 value=\"0\"", "<th5 value=\"-0.04\"");
+  const model::Machine machine = model::parse_machine(robot, "true.xml");
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> share(-1, 1);
+  std::normal_distribution<double> noise(0, kU_mm);
+  std::string text = "J1[deg],J2[deg],J3[deg],J4[deg],J5[deg],J6[deg],x[mm],y[mm],z[mm],u[um]\n";
+  std::vector<std::string> rows;
+  for (int i = 0; i < 60; ++i) {
+    std::string row;
+    for (const auto& [middle, half] :
+         {std::pair(0, 120), {-80, 40}, {70, 40}, {-75, 45}, {-80, 40}, {0, 150}})
+      row += fmt::format("{:.5f},", middle + half * share(random));
+    rows.push_back(row);
+    text += row + "0,0,0,20\n";
+  }
+  const model::Measurement m = model::parse_measurement(text, "true.csv", machine);
+  const Eigen::VectorXd read = model::predict(machine, m);
+  std::string measured = text.substr(0, text.find('\n') + 1);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    measured += rows[i];
+    for (std::size_t k = 0; k < 3; ++k)
+      measured += fmt::format("{:.4f},", read[static_cast<Eigen::Index>(3 * i + k)] + noise(random));
+    measured += "20\n";
+  }
+  return measured;
+}
+
+struct Reflector : testing::Test {
+  Reflector() {
+    fs::create_directories(folder);
+    text::write_file(folder + "/robot.xml", robot);
+    text::write_file(folder + "/points.csv", survey(robot));
+  }
+  ~Reflector() override { fs::remove_all(folder); }
+  int run(const std::string& command) {
+    text::write_file(folder + "/call.sh", command + "\n");
+    const int status = std::system(
+        ("cd '" + folder + "' && PATH=" VERNIER_BIN_DIR ":$PATH sh -e call.sh >said.txt 2>&1").c_str());
+    said = text::read_file(folder + "/said.txt");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string robot = text::read_file(VERNIER_SOURCE_DIR "/tables/machines/ur10e.xml");
+  std::string folder = testing::TempDir() + "reflector_" + std::to_string(getpid()), said;
+};
+
+TEST_F(Reflector, IsNamedBesideAnOffsetOfTheToolPoint) {
+  ASSERT_EQ(run("vernier diagnose robot.xml points.csv --json d.json"), 0) << said;
+  const auto json = nlohmann::json::parse(text::read_file(folder + "/d.json"));
+  EXPECT_THAT(json["explanation"].get<std::string>(),
+              HasSubstr("vernier set robot.xml --reflector -o NEW.xml"));
+  ASSERT_EQ(run("vernier set robot.xml --reflector -o with.xml"), 0) << said;
+  EXPECT_EQ(run("vernier set with.xml --reflector -o twice.xml"), 1) << said;
+  ASSERT_EQ(run("vernier diagnose with.xml points.csv --json d.json"), 0) << said;
+  const auto declared = nlohmann::json::parse(text::read_file(folder + "/d.json"));
+  EXPECT_EQ(declared["verdict"], "consistent");
+  EXPECT_THAT(declared["explanation"].get<std::string>(), Not(HasSubstr("--reflector")));
+}
+
+TEST_F(Reflector, IsEstimatedAndNotCorrected) {
+  ASSERT_EQ(run("vernier set robot.xml --reflector -o with.xml && vernier fit with.xml points.csv -o f.xml"),
+            0)
+      << said;
+  const model::Machine fitted = model::parse_machine(text::read_file(folder + "/f.xml"), "f.xml");
+  ASSERT_EQ(fitted.tool_shifts.size(), 1U);
+  EXPECT_NEAR(fitted.tool_shifts.front().value[0], kReflector_mm, 0.1);
+  // What a correction moves the axes for: the zero errors alone.
+  ASSERT_EQ(run("vernier pose f.xml --at J1=0,J2=-80,J3=70,J4=-75,J5=-80,J6=0 --json p.json"), 0) << said;
+  const auto pose = nlohmann::json::parse(text::read_file(folder + "/p.json"));
+  double largest_um = 0;
+  for (const double one : pose["deviation_um"]) largest_um = std::max(largest_um, std::abs(one));
+  EXPECT_LT(largest_um, 2000);
+}
+
+TEST_F(Reflector, IsDeclaredInANewMachineFile) {
+  ASSERT_EQ(
+      run("vernier new gantry --axis X:0:200 --axis Y:0:200 --reflector -o new.xml --measurements s.csv"), 0)
+      << said;
+  EXPECT_EQ(model::parse_machine(text::read_file(folder + "/new.xml"), "new.xml").tool_shifts.size(), 1U);
+}
+
+}  // namespace
+}  // namespace vernier::reflector_test
