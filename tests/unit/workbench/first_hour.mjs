@@ -48,7 +48,7 @@ async function filesAsTheyCame(page) {
   execFileSync(vernier, ['import', 'table', 'Portal_X.csv', '-o', join(top, 'by_hand.csv')], { cwd: folder, stdio: 'ignore' });
   assert.equal(readFileSync(join(folder, 'Portal_X_read.csv'), 'latin1'), readFileSync(join(top, 'by_hand.csv'), 'latin1'));
   assert.ok((await text(page, '#imported')).includes('decimal comma'), 'how it was read is said');
-  await page.until("document.getElementById('files').textContent.includes('spreadsheet, to be imported')", 'what it is');
+  await page.until("document.getElementById('files').textContent.includes('spreadsheet, read into Portal_X_read.csv')", 'what it is');
   // A heading that means nothing: asked for, not guessed.
   await page.drop([{ name: 'dial.csv', text: 'Pos;Anzeige\r\n0,0;1,5\r\n100,0;2,5\r\n200,0;4,0\r\n' }]);
   await page.until("document.getElementById('sheet-message')", 'what is missing to be said');
