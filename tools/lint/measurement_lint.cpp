@@ -12,8 +12,8 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/distances/pair_names.h"
 #include "tools/import/kinds.h"
-#include "tools/import/reading/plain_cells.h"
 #include "tools/lint/lint_table.h"
 #include "tools/lint/measurement_meaning.h"
 #include "tools/model/chain/prediction.h"
@@ -243,7 +243,12 @@ class Look {
         points = &column;
     }
     if (points != nullptr && length)
-      findings_.error(table_.header_line, points->name, importer::lengths_between_points_text());
+      findings_.error(
+          table_.header_line, points->name,
+          "the rows are lengths between two points, and a fit needs the positions of the points",
+          fmt::format("give the positions: vernier import table {} --point \"{}=X,Y,Z\" and so on "
+                      "for each point (the page touch, \"A printer and a printed square\")",
+                      file_, points->cell.front().substr(0, 1)));
   }
 
   /// Columns that are missing in the header.

@@ -92,12 +92,13 @@ class Builder {
     if (missing.size() == machine_.axes.size() && missing.size() > 1)
       throw text::InputError(
           reader_.header(), missing.front()->name,
-          fmt::format("no axis of the machine has a column; if the columns have other names "
-                      "(a1, joint_1), read them by their names: vernier import table {} "
-                      "--machine MACHINE.xml -o NEW.csv; distances between points (a caliper on a printed "
-                      "square) need the positions of the points: the columns corner, distance and from of "
-                      "the page touch",
-                      reader_.header().file));
+          fmt::format(
+              "no axis of the machine has a column; if the columns have other names "
+              "(a1, joint_1), read them by their names: vernier import table {} "
+              "--machine MACHINE.xml -o NEW.csv; distances between points (a caliper on a printed "
+              "square) need the positions of the points: import their table with these positions (the page "
+              "import, \"Distances between named points\")",
+              reader_.header().file));
     std::string set;
     for (const Axis* const axis : missing) set += " " + set_of_axis(*axis);
     throw text::InputError(reader_.header(), missing.front()->name,

@@ -63,6 +63,31 @@ TEST_F(ImportRemedies, OfATableKeepTheOptionsOfTheCall) {
   EXPECT_THAT(text::read_file(folder + "/read.csv"), testing::StartsWith("X[mm],x[mm],run,u[um],Y[mm]\n"));
 }
 
+TEST_F(ImportRemedies, OfDistancesBetweenPointsAskForThePositions) {
+  text::write_file(folder + "/square.csv", "Strecke;Soll;Ist\nAB;60;60,1\nBC;80;80,1\nAC;100;99,9\n");
+  ASSERT_EQ(run("vernier import table square.csv --machine m.xml --set 'u[mm]=0,02' -o read.csv"), 1) << said;
+  EXPECT_THAT(said, HasSubstr("square.csv:1: \"A, B, C\": the rows are distances between named points"));
+  EXPECT_THAT(said, testing::Not(HasSubstr("--column")));
+  std::string call = said.substr(said.rfind("vernier import"));
+  for (const auto& [open, position] :
+       {std::pair("A=X,Y", "A=0,0"), std::pair("B=X,Y", "B=60,0"), std::pair("C=X,Y", "C=60,80")}) {
+    ASSERT_NE(call.find(open), std::string::npos) << call;
+    call.replace(call.find(open), std::string(open).size(), position);
+  }
+  ASSERT_EQ(run(call), 0) << said;
+  EXPECT_THAT(text::read_file(folder + "/read.csv"),
+              testing::StartsWith("point,X[mm],Y[mm],distance[mm],from,u[mm]\nA,0,0,,,0.02\n"));
+  // A list of the positions, and corners in another order.
+  text::write_file(folder + "/list.csv", "Punkt;X [mm];Y [mm]\nA;0;0\nC;60;0\nB;60;80\n");
+  ASSERT_EQ(run("vernier import table square.csv --machine m.xml --nominal list.csv -o other.csv"), 1)
+      << said;
+  EXPECT_THAT(said,
+              HasSubstr("the nominal distance of A and B is 60 mm, and the stated points are 100 mm apart"));
+  EXPECT_THAT(said, HasSubstr("if the positions of B and C are exchanged, all distances agree"));
+  ASSERT_EQ(run("vernier import table square.csv --nominal list.csv -o other.csv"), 1) << said;
+  EXPECT_THAT(said, HasSubstr("\"--nominal\": this option requires --machine"));
+}
+
 TEST_F(ImportRemedies, OfAWorkbookReadEachOfItsSheets) {
   const auto rows = [](const std::string& axis) {
     return std::vector<std::vector<std::string>>{

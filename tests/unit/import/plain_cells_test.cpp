@@ -59,14 +59,6 @@ TEST(PlainCells, ResultsBesideTheTableAreNoAxes) {
                     HasSubstr("note: the columns \"A=\", \"B=\" have results beside the rows")));
 }
 
-TEST(PlainCells, LengthsBetweenPointsNameTheColumnsOfAFit) {
-  EXPECT_THAT(read("Strecke;Länge [mm]\nAB;165,49\nCD;165,51\nAD;164,62\n"),
-              HasSubstr("with the columns corner,X[mm],Y[mm],Z[mm],distance[mm],from"));
-  // The planes of a ball bar are no points.
-  EXPECT_THAT(read("Ebene;Länge [mm]\nXY;165,49\nYZ;165,51\nXZ;164,62\n"),
-              Not(HasSubstr("between two points")));
-}
-
 TEST(PlainCells, ATitleAboutTheOrderOfTimeGetsANote) {
   const std::string table =
       "Pos [mm];hin 1 [µm];rück 1 [µm]\n0;-3,7;15,3\n50;0,1;13\n100;3;11,7\n150;5,3;10,5\n";

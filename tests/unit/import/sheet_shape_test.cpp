@@ -152,9 +152,10 @@ TEST(SheetShape, DocumentsWithTheNameOfATableAreNamed) {
 }
 
 TEST(SheetShape, ARowOfMoreWordsThanNumbersIsNamed) {
-  EXPECT_THAT(read("von;nach;Abstand [mm]\nA;C;141,27\nB;D;141,69\n"),
-              HasSubstr("refused: s.csv:2: \"A; C; 141,27\": this row has more words than numbers (number: "
-                        "141,27): a row of measured data needs the positions of the axes as numbers"));
+  EXPECT_THAT(
+      read("Ort;Teil;Abstand [mm]\nHalle;Tisch;141,27\nHalle;Arm;141,69\n"),
+      HasSubstr("refused: s.csv:2: \"Halle; Tisch; 141,27\": this row has more words than numbers "
+                "(number: 141,27): a row of measured data needs the positions of the axes as numbers"));
 }
 
 /// A table with one deviation per 50 mm, in um.

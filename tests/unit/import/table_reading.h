@@ -11,8 +11,7 @@ namespace vernier::importer_test {
 inline std::string read(const std::string& bytes, const importer::SheetWords& words = {}) {
   try {
     const importer::SheetReading reading = importer::read_as_sheet(bytes, "s.csv", words);
-    std::string text =
-        measurement_csv(table_of_sheet(reading.sheet, reading.table, reading.columns, reading.wishes));
+    std::string text = measurement_csv(importer::table_of_reading(reading));
     for (const std::string& note : reading.sheet.notes) text += "note: " + note + "\n";
     return text;
   } catch (const text::InputError& error) {

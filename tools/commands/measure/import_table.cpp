@@ -10,6 +10,8 @@
 #include "tools/commands/measure/import_kinds.h"
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/columns/delimited.h"
+#include "tools/import/distances/distance_table.h"
+#include "tools/import/logs/point_positions.h"
 #include "tools/import/reading/sheet_import.h"
 #include "tools/import/tables/survey.h"
 #include "tools/import/words/joint_names.h"
@@ -27,13 +29,15 @@ using Json = nlohmann::ordered_json;
 
 struct TableArguments {
   std::string file, profile, save_profile, machine, output, json;
+  std::vector<std::string> points;  // of distances between named points
+  std::string nominal;              // list of the positions of these points
   importer::SheetWords words;
   std::size_t check_every = 0;
   bool preview = false;
 };
 
 void print_columns(std::FILE* out, const importer::SheetReading& reading) {
-  const auto& [wishes, sheet, table, columns, runs] = reading;
+  const auto& [wishes, sheet, table, columns, runs, distances] = reading;
   fmt::print(out, "{}: {}\n", sheet.file, importer::how_read(sheet));
   if (table.has_headings)
     fmt::print(out, "headings in line {}{}{}, data from line {}\n",
@@ -188,6 +192,32 @@ void note_other_sheets(sheet::Sheet& sheet, const CLI::App& kind) {
                   names, calls));
 }
 
+/// Refuses distances between named points without their positions, with the call to complete.
+void refuse_without_positions(const importer::PointDistances& distances, const CLI::App& kind) {
+  if (!distances.asks_positions) return;
+  const CLI::Option* const output = kind.get_option_no_throw("--output");
+  throw importer::refusal_for_positions(
+      distances,
+      fmt::format("give: {}{} -o {}", call_of(kind, {"--output", "--json", "--preview"}),
+                  importer::options_of_points(distances),
+                  output->count() > 0 ? lint::quoted_for_shell(output->results().front()) : "NEW.csv"));
+}
+
+/// The points of the options, and of the list of nominal positions.
+importer::NamedPoints points_of(const TableArguments& arguments, const model::Machine* machine) {
+  importer::NamedPoints points =
+      importer::stated_points(arguments.points, arguments.words.constants, machine);
+  points.tolerance_mm = arguments.words.points.tolerance_mm;
+  if (arguments.nominal.empty()) return points;
+  if (machine == nullptr)
+    throw text::InputError(
+        {}, "--nominal",
+        "this option requires --machine: the machine file states the axes whose positions the list has");
+  importer::add_listed_points(points, arguments.words.constants, text::read_file(arguments.nominal),
+                              arguments.nominal, *machine);
+  return points;
+}
+
 void run_table(const TableArguments& arguments, const CLI::App& kind) {
   importer::SheetWishes wishes;
   if (!arguments.profile.empty())
@@ -197,10 +227,12 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
   if (!arguments.machine.empty()) machine = model::read_machine(arguments.machine);
   if (machine)
     for (const model::Axis& axis : machine->axes) words.axes.push_back(axis.name);
+  words.points = points_of(arguments, machine ? &*machine : nullptr);
   const std::string bytes = text::read_file(arguments.file);
   importer::SheetReading reading = importer::read_as_sheet(bytes, arguments.file, words, wishes);
   OpenAxes open;
-  if (machine) {
+  if (reading.distances) refuse_without_positions(*reading.distances, kind);
+  if (machine && !reading.distances) {
     open = open_axes(*machine, reading);
     if (!open.axes.empty()) refuse_robot_without_units(open, reading, kind);
     if (open.found.sure) {
@@ -219,7 +251,7 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
   if (arguments.preview) print_columns(out, reading);
   importer::ImportTable read = [&] {
     try {
-      return importer::table_of_sheet(sheet, reading.table, reading.columns, reading.wishes);
+      return importer::table_of_reading(reading);
     } catch (const text::InputError&) {
       // The corrections start from the assignment that was recognised.
       if (!arguments.preview) print_columns(stderr, reading);
@@ -247,6 +279,7 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
                  {"n_rows", read.line.size()},
                  {"columns", importer::columns_json(reading)},
                  {"notes", sheet.notes}};
+  if (reading.distances) result["points"] = reading.distances->points;
   if (!arguments.machine.empty()) {
     const model::Measurement m =
         model::parse_measurement(csv, arguments.file, model::read_machine(arguments.machine));
@@ -300,6 +333,21 @@ void add_table_kind(CLI::App& kind) {
       ->allow_extra_args(false);
   kind.add_flag("--one-motion", arguments->words.one_motion,
                 "columns of several axes side by side are poses of all axes, not several tables");
+  kind.add_option("--point", arguments->points,
+                  "commanded position of a named point, \"A=30,30,0.2\", for a table of distances between "
+                  "points (AB, A-B, P1-P2); repeat the option for each point")
+      ->allow_extra_args(false);
+  kind.add_option(
+          "--nominal", arguments->nominal,
+          "list of the positions of the points (table with a column of names, and a heading and a unit "
+          "for each axis), in place of --point; requires --machine")
+      ->type_name(kReads);
+  kind.add_option(
+          "--tolerance", arguments->words.points.tolerance_mm,
+          "--point, --nominal: largest permitted difference of a nominal distance of the table from the "
+          "distance of the stated points, mm")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   kind.add_option("--sign", arguments->words.sign,
                   "sign of all deviations of the table, if its texts do not state the sign clearly")
       ->check(CLI::IsMember({"actual-nominal", "nominal-actual"}));

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "tools/format/columns.h"
+#include "tools/format/units.h"
 #include "tools/import/reading/sheet_import.h"
 #include "tools/maths/alignment.h"
 #include "tools/model/chain/chain.h"
@@ -19,6 +20,8 @@
 
 namespace vernier::importer {
 namespace {
+
+constexpr const char* kPointTwice = "the list of nominal positions has this point twice";
 
 /// The rows of a list of nominal positions.
 struct List {
@@ -59,6 +62,28 @@ std::size_t column_of_axis(const List& list, const model::Axis& axis) {
           " above the column, or add the column");
 }
 
+/// The number in a cell of the list, with a decimal point.
+std::string position_cell(const List& list, std::size_t i, std::size_t column, const model::Axis& axis) {
+  const std::string& cell = list.cell(i, column);
+  const auto number = sheet::plain_number(cell, list.reading.sheet.decimal_comma);
+  if (!number)
+    throw text::InputError(list.place(i), cell, "not a number, for the nominal position of " + axis.name);
+  return *number;
+}
+
+/// The column with the names of the points: the first one that is no axis and has a cell in each row.
+std::size_t column_of_names(const List& list, const model::Machine& machine) {
+  const std::vector<SheetColumn>& columns = list.reading.columns;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k].use == SheetColumn::Use::kDeviation || machine.find_axis(columns[k].name)) continue;
+    bool all = true;
+    for (std::size_t i = 0; i < list.rows.size(); ++i) all = all && !list.cell(i, k).empty();
+    if (all) return k;
+  }
+  throw text::InputError(list.heading(), "",
+                         "the list of nominal positions has no column with the names of the points");
+}
+
 /// The part of a point's name that lists share: "A::Vol::P1" is "p1".
 std::string key_of(const std::string& name) {
   const auto at = name.rfind("::");
@@ -92,8 +117,7 @@ std::vector<std::size_t> rows_by_name(const ImportTable& points, const List& lis
           continue;
         }
         if (at->second.size() > 1)
-          throw text::InputError(list.place(at->second[1]), own[at->second[1]],
-                                 "the list of nominal positions has this point twice");
+          throw text::InputError(list.place(at->second[1]), own[at->second[1]], kPointTwice);
         rows.push_back(at->second.front());
         ++found;
       }
@@ -180,17 +204,35 @@ NominalTable with_nominal(const ImportTable& points, const std::string& bytes, c
     const std::size_t k = column_of_axis(list, axis);
     ImportTable::Column column{axis.name, list.reading.columns[k].unit, {}};
     for (const std::size_t i : rows) {
-      const std::string& cell = list.cell(i, k);
-      const auto number = sheet::plain_number(cell, list.reading.sheet.decimal_comma);
-      if (!number)
-        throw text::InputError(list.place(i), cell, "not a number, for the nominal position of " + axis.name);
-      column.cells.push_back(*number);
+      column.cells.push_back(position_cell(list, i, k, axis));
     }
     result.table.columns.push_back(std::move(column));
   }
   result.table.columns.insert(result.table.columns.end(), points.columns.begin(), points.columns.end());
   check_distances(result, machine, tolerance_mm);
   return result;
+}
+
+std::vector<ListedPosition> listed_positions(const std::string& bytes, const std::string& file,
+                                             const model::Machine& machine,
+                                             const std::vector<std::string>& axes) {
+  const List list = read_list(bytes, file, machine);
+  const std::size_t names = column_of_names(list, machine);
+  std::vector<ListedPosition> points;
+  for (std::size_t i = 0; i < list.rows.size(); ++i) {
+    points.push_back({text::trimmed(list.cell(i, names)), {}});
+    for (std::size_t other = 0; other < i; ++other)
+      if (points[other].name == points[i].name)
+        throw text::InputError(list.place(i), points[i].name, kPointTwice);
+  }
+  for (const model::Axis& axis : machine.axes) {
+    if (std::find(axes.begin(), axes.end(), axis.name) == axes.end()) continue;
+    const std::size_t k = column_of_axis(list, axis);
+    const double factor = format::find_unit(list.reading.columns[k].unit)->factor;
+    for (std::size_t i = 0; i < list.rows.size(); ++i)
+      points[i].values.push_back(*text::parse_number(position_cell(list, i, k, axis)) * factor);
+  }
+  return points;
 }
 
 }  // namespace vernier::importer

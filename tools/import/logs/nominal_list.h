@@ -30,4 +30,17 @@ struct NominalTable {
 NominalTable with_nominal(const ImportTable& points, const std::string& bytes, const std::string& file,
                           const model::Machine& machine, double tolerance_mm);
 
+/// A named point of a list of nominal positions.
+struct ListedPosition {
+  std::string name;
+  std::vector<double> values;  // one for each axis that was asked for, mm or deg
+};
+
+/// Returns the named points of a list of nominal positions (as above) with their positions of the axes `axes`
+/// of the machine. Throws InputError with file, line and word for: a missing axis or unit, a cell that is not
+/// a number, a name that occurs twice, a list without a column of names.
+std::vector<ListedPosition> listed_positions(const std::string& bytes, const std::string& file,
+                                             const model::Machine& machine,
+                                             const std::vector<std::string>& axes);
+
 }  // namespace vernier::importer

@@ -229,44 +229,4 @@ void note_order_of_time(sheet::Sheet& sheet, const sheet::SheetTable& table) {
   }
 }
 
-bool names_two_points(const std::string& cell) {
-  std::string letters = text::trimmed(cell);
-  std::erase_if(letters, [](char one) { return one == '-' || one == ' ' || one == '_'; });
-  return letters.size() == 2 && letters[0] != letters[1] &&
-         std::all_of(letters.begin(), letters.end(),
-                     [](char one) { return one >= 'A' && one <= 'W'; });  // XY is a plane
-}
-
-std::string lengths_between_points_text() {
-  return "the rows are lengths between two points, and a fit needs the positions of the points: write a row "
-         "for each point, with the columns corner,X[mm],Y[mm],Z[mm],distance[mm],from (the page touch, \"A "
-         "printer and a printed square\")";
-}
-
-void note_lengths_between_points(sheet::Sheet& sheet, const sheet::SheetTable& table) {
-  if (!table.has_headings) return;
-  const SheetWishes usual;
-  const Guess guess(usual);
-  bool points = false, length = false;
-  for (std::size_t k = 0; k < table.headings.size(); ++k) {
-    const sheet::Heading& heading = table.headings[k];
-    if (guess.is_axis(guess.column(heading).name)) return;
-    const auto unit = heading.unit.empty() ? std::nullopt : format::find_unit(heading.unit);
-    length |= unit && unit->dimension == format::Dimension::kLength;
-    std::set<std::string> pairs;
-    bool others = false;
-    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-      const std::string& cell = sheet.rows[row][k];
-      if (names_two_points(cell))
-        pairs.insert(cell);
-      else
-        others |= !cell.empty();
-    }
-    points |= pairs.size() > 1 && !others;
-  }
-  if (points && length)
-    sheet.notes.push_back(
-        fmt::format("line {}: {}", sheet.line[table.heading_row], lengths_between_points_text()));
-}
-
 }  // namespace vernier::importer

@@ -31,13 +31,4 @@ void settle_uncertainties(sheet::Sheet& sheet, sheet::SheetTable& table,
 /// the runs are read at the positions in their rows.
 void note_order_of_time(sheet::Sheet& sheet, const sheet::SheetTable& table);
 
-/// Notes rows that are lengths between two named points ("AB", "CD") without the positions of the points.
-void note_lengths_between_points(sheet::Sheet& sheet, const sheet::SheetTable& table);
-
-/// Text of the note above, without the place: what such rows lack, and the columns that hold them.
-std::string lengths_between_points_text();
-
-/// True if a cell names two points by letters: "AB", "A-B".
-bool names_two_points(const std::string& cell);
-
 }  // namespace vernier::importer

@@ -298,15 +298,76 @@ void note_signs(SheetReading& reading) {
   }
 }
 
+void leave_columns(SheetReading& reading, const std::vector<std::string>& left) {
+  for (const std::string& heading : left) {
+    if (find_heading(reading.table, heading) == std::string::npos)
+      refuse_heading(reading.table, "--leave", heading);
+    SheetColumn column;
+    column.use = SheetColumn::Use::kLeft;
+    reading.wishes.assignments.push_back({heading, column, {}});
+  }
+}
+
+/// True if an option or a profile states the column of an axis: the table then has positions, and is no table
+/// of distances between named points.
+bool assigns_axis(const SheetWords& words, const SheetWishes& wishes) {
+  const Guess guess(wishes);
+  const auto names_axis = [&](const std::string& side) {
+    return guess.is_axis(text::trimmed(side.substr(0, side.find('['))));
+  };
+  for (const std::vector<std::string>* const list : {&words.columns, &words.deviations})
+    for (const std::string& one : *list)
+      if (const std::size_t sign = one.find('='); sign != std::string::npos)
+        if (names_axis(one.substr(0, sign)) || names_axis(one.substr(sign + 1))) return true;
+  return std::any_of(wishes.assignments.begin(), wishes.assignments.end(),
+                     [&](const auto& wish) { return guess.is_axis(wish.column.name); });
+}
+
+/// A table of distances between named points.
+void read_distances(SheetReading& reading, const PairSheet& pairs, const SheetWords& words) {
+  for (const std::string& one : words.columns) assign_column(reading.wishes, reading.table, one);
+  leave_columns(reading, words.left);
+  std::string ask;
+  reading.columns = distance_columns(reading.sheet, reading.table, pairs, reading.wishes, ask);
+  reading.distances =
+      distances_of(reading.sheet, reading.table, pairs, reading.columns, reading.wishes, words.points, ask);
+  for (const std::string& note : reading.distances->notes) reading.sheet.notes.push_back(note);
+  // The table is shown with the names of its points.
+  for (std::size_t row = reading.table.first_data; row < reading.sheet.rows.size(); ++row)
+    restore_pair(reading.sheet.rows[row][pairs.column], pairs);
+}
+
+/// Positions of points are for tables of distances only.
+void refuse_points(const SheetWords& words, const SheetReading& reading) {
+  if (words.points.points.empty()) return;
+  throw text::InputError(
+      {reading.sheet.file, reading.sheet.line[reading.table.heading_row]},
+      words.points.list.empty() ? "--point" : "--nominal",
+      "the table has no column with pairs of points (AB, A-B, P1-P2), and its rows are not "
+      "distances between named points: correct the names, or omit this option");
+}
+
 }  // namespace
+
+ImportTable table_of_reading(const SheetReading& reading) {
+  if (!reading.distances)
+    return table_of_sheet(reading.sheet, reading.table, reading.columns, reading.wishes);
+  if (reading.distances->refusal) throw text::InputError(*reading.distances->refusal);
+  return reading.distances->table;
+}
 
 SheetReading read_as_sheet(const std::string& bytes, const std::string& file, const SheetWords& words,
                            SheetWishes wishes) {
   SheetReading result;
   result.wishes = wishes_of(words, std::move(wishes));
-  result.sheet = sheet::read_sheet(bytes, file, result.wishes.format);
+  std::vector<std::string> known;
+  for (const NamedPoint& one : words.points.points) known.push_back(one.name);
+  const std::string lines = lines_of_pairs(bytes, known);
+  result.sheet = sheet::read_sheet(lines.empty() ? bytes : lines, file, result.wishes.format);
   const std::set<std::size_t> degrees = convert_degree_cells(result.sheet);
   leave_tolerances(result.sheet);
+  const std::optional<PairSheet> pairs =
+      assigns_axis(words, result.wishes) ? std::nullopt : take_pairs(result.sheet, known);
   sheet::keep_table(result.sheet, result.wishes.format.table);
   const std::vector<RunLine> run_lines = take_run_lines(result.sheet);
   result.table = sheet::parts_of_sheet(result.sheet);
@@ -318,7 +379,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   note_short_rows(result.sheet, result.table);
   leave_state_lines(result.sheet, result.table);
   leave_invalid_rows(result.sheet, result.table);
-  note_repeated_readings(result.sheet, result.table);
+  if (!pairs) note_repeated_readings(result.sheet, result.table);
   note_failed_formulas(result.sheet, result.table);
   refuse_counts_below(result.sheet, result.table);
   const bool axes_left = std::any_of(words.left.begin(), words.left.end(), [&](const std::string& one) {
@@ -337,7 +398,11 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   leave_verdicts(result.sheet, result.table, named);
   settle_roles(result.sheet, result.table, named);
   settle_uncertainties(result.sheet, result.table, named);
-  note_lengths_between_points(result.sheet, result.table);
+  if (pairs) {
+    read_distances(result, *pairs, words);
+    return result;
+  }
+  refuse_points(words, result);
   note_order_of_time(result.sheet, result.table);
   apply_sign_column(result.sheet, result.table, named);
   leave_differences(result.sheet, result.table, named);
@@ -360,13 +425,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   for (const std::string& heading : words.fill)
     if (find_heading(result.table, heading) == std::string::npos)
       refuse_heading(result.table, "--fill", heading);
-  for (const std::string& heading : words.left) {
-    if (find_heading(result.table, heading) == std::string::npos)
-      refuse_heading(result.table, "--leave", heading);
-    SheetColumn column;
-    column.use = SheetColumn::Use::kLeft;
-    result.wishes.assignments.push_back({heading, column, {}});
-  }
+  leave_columns(result, words.left);
   add_positions_of_titles(result.sheet, result.table, result.wishes);
   if (words.decimal.empty())
     settle_thousands(result.sheet, result.table,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/import/columns/sheet_columns.h"
+#include "tools/import/distances/distance_table.h"
 #include "tools/import/tables/sheet_table.h"
 
 namespace vernier::importer {
@@ -21,6 +22,7 @@ struct SheetWords {
   std::vector<std::string> fill;  // headings of columns whose empty cells have the value above them
   bool one_motion = false;
   std::vector<std::string> axes;  // axes of the machine, if the machine is known
+  NamedPoints points;             // points of a table of distances between named points
 };
 
 /// Result of reading a spreadsheet: headings, columns and their meaning, before the rows of data are
@@ -31,6 +33,7 @@ struct SheetReading {
   sheet::SheetTable table;
   std::vector<SheetColumn> columns;
   std::size_t runs = 0;  // number of columns that were joined because each was one run (unfold_runs)
+  std::optional<PointDistances> distances = {};  // no value: no table of distances between named points
 };
 
 /// Reads a spreadsheet from text or from a workbook. `wishes`: the settings of a profile. Options
@@ -38,6 +41,10 @@ struct SheetReading {
 /// throws InputError with file, line and word.
 SheetReading read_as_sheet(const std::string& bytes, const std::string& file, const SheetWords& words,
                            SheetWishes wishes = {});
+
+/// Returns the table of a measurement file (sheet_table.h: table_of_sheet; distance_table.h: distances_of).
+/// Throws InputError if the spreadsheet is not complete.
+ImportTable table_of_reading(const SheetReading& reading);
 
 /// Returns the text format of a sheet for people, for example "UTF-8, columns separated by semicolon, decimal
 /// comma".

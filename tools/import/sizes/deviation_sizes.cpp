@@ -30,7 +30,7 @@ constexpr Limits kLengths = {5, 0.5, 2, 1e-4};
 /// Uncalibrated robots are wrong by up to 12 mm. A table of a robot has the positions of several rotary
 /// joints.
 constexpr Limits kLengthsOfRobots = {15, 0.5, 5, 1e-4};
-constexpr std::size_t kFewestJoints = 3;  // machine tools have at most two rotary axes
+constexpr std::size_t kJointsOfRobot = 3;  // machine tools have at most two rotary axes
 /// Rotary tables are right within 1 arcmin, worn ones within 0.1 deg; autocollimators resolve 0.01 arcsec.
 constexpr Limits kAngles = {1, 0.1, 0.2, 2.5e-6};
 /// Deviations that are a larger share of the travel: a scale error of a twentieth is no error of a machine
@@ -60,7 +60,7 @@ Limits limits_of(const std::vector<SizedColumn>& columns, bool angle, const Plau
     return one.axis && one.use == SizedColumn::Use::kPosition && sized_unit(one) &&
            sized_unit(one)->dimension == format::Dimension::kAngle;
   });
-  const bool robot = static_cast<std::size_t>(joints) >= kFewestJoints;
+  const bool robot = static_cast<std::size_t>(joints) >= kJointsOfRobot;
   Limits limits = angle ? kAngles : robot ? kLengthsOfRobots : kLengths;
   if (const auto most = angle ? plausible.deg : plausible.mm) limits.surely = limits.unusual = *most;
   return limits;

@@ -15,13 +15,13 @@
 namespace vernier::importer {
 namespace {
 
-constexpr std::size_t kFewestPlaces = 8;   // fewer places agree by chance
-constexpr std::size_t kFewestTargets = 5;  // fewer targets show no pattern
-constexpr std::size_t kMostRuns = 200;     // more runs are labels of the rows
+constexpr std::size_t kFewestPlaces = 8;        // fewer places agree by chance
+constexpr std::size_t kFewestTargetsOfRun = 5;  // fewer targets show no pattern
+constexpr std::size_t kMostComparedRuns = 200;  // more runs are labels of the rows
 /// Share of the readings that the comparison with the opposite sign leaves: unrelated runs leave 1.
-constexpr double kResidualShare = 0.3;
+constexpr double kResidualOfRun = 0.3;
 /// The size of both runs agrees within this factor: the scatter of readings is below a fifth of their size.
-constexpr double kRatioSpread = 1.25;
+constexpr double kSpreadOfRatios = 1.25;
 
 enum class Relation { kUnclear, kSame, kOpposite };
 
@@ -39,20 +39,20 @@ Relation relation_of(const RunDeviations& one, const RunDeviations& other) {
   }
   if (common < kFewestPlaces || !(xx > 0) || !(yy > 0)) return Relation::kUnclear;
   const double ratio = xy / xx, residual = std::sqrt(std::max(0.0, yy - ratio * xy) / yy);
-  if (residual > kResidualShare || std::abs(ratio) > kRatioSpread || std::abs(ratio) < 1 / kRatioSpread)
+  if (residual > kResidualOfRun || std::abs(ratio) > kSpreadOfRatios || std::abs(ratio) < 1 / kSpreadOfRatios)
     return Relation::kUnclear;
   return ratio > 0 ? Relation::kSame : Relation::kOpposite;
 }
 
 /// Columns that belong to the positions of one axis; nullopt: the table does not have the column.
-struct Beside {
+struct BesideInRun {
   std::optional<std::size_t> run, sense, position;
 };
 
-Beside beside_of(const std::vector<SizedColumn>& columns, const std::string& axis,
-                 const std::string& positions) {
+BesideInRun beside_of(const std::vector<SizedColumn>& columns, const std::string& axis,
+                      const std::string& positions) {
   const std::string sense = format::entry_of(format::AxisQuantity::kSense).prefix + axis;
-  Beside beside;
+  BesideInRun beside;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (columns[i].use != SizedColumn::Use::kPosition) continue;
     if (columns[i].name == format::columns::kRun) beside.run = i;
@@ -64,7 +64,7 @@ Beside beside_of(const std::vector<SizedColumn>& columns, const std::string& axi
 
 void note_opposite_run(sheet::Sheet& sheet, const sheet::SheetTable& table,
                        const std::vector<SizedColumn>& columns, std::size_t k) {
-  const Beside beside = beside_of(columns, columns[k].name, columns[k].positions);
+  const BesideInRun beside = beside_of(columns, columns[k].name, columns[k].positions);
   if (!beside.run || !beside.position) return;
   std::map<std::string, RunDeviations> runs;
   std::map<std::string, std::size_t> first_row;
@@ -102,7 +102,7 @@ std::optional<double> only_in(const Targets& a, const Targets& b) {
 
 void note_odd_target(sheet::Sheet& sheet, const sheet::SheetTable& table,
                      const std::vector<SizedColumn>& columns, std::size_t k) {
-  const Beside beside = beside_of(columns, columns[k].name, columns[k].name);
+  const BesideInRun beside = beside_of(columns, columns[k].name, columns[k].name);
   if (!beside.run) return;
   std::map<std::string, Targets> groups;
   std::map<std::string, std::map<double, std::size_t>> rows;
@@ -115,7 +115,7 @@ void note_odd_target(sheet::Sheet& sheet, const sheet::SheetTable& table,
     rows[name].emplace(*at, row);
   }
   constexpr std::size_t kFewestGroups = 3;  // of two, each may be the odd one
-  if (groups.size() < kFewestGroups || groups.size() > kMostRuns) return;
+  if (groups.size() < kFewestGroups || groups.size() > kMostComparedRuns) return;
   std::map<Targets, std::vector<std::string>> same;
   for (auto& [name, targets] : groups) {
     std::sort(targets.begin(), targets.end());
@@ -124,7 +124,7 @@ void note_odd_target(sheet::Sheet& sheet, const sheet::SheetTable& table,
   if (same.size() != 2) return;
   const auto usual = same.begin()->second.size() > 1 ? same.begin() : std::next(same.begin());
   const auto odd = usual == same.begin() ? std::next(usual) : same.begin();
-  if (odd->second.size() != 1 || usual->first.size() < kFewestTargets) return;
+  if (odd->second.size() != 1 || usual->first.size() < kFewestTargetsOfRun) return;
   const auto target = only_in(odd->first, usual->first), missing = only_in(usual->first, odd->first);
   if (!target || !missing || odd->first.size() != usual->first.size()) return;
   const std::size_t row = rows.at(odd->second.front()).at(*target);
@@ -138,7 +138,7 @@ void note_odd_target(sheet::Sheet& sheet, const sheet::SheetTable& table,
 /// Notes a run of which every deviation is exactly 0, beside runs that have other values.
 void note_zero_run(sheet::Sheet& sheet, const sheet::SheetTable& table,
                    const std::vector<SizedColumn>& columns, std::size_t k) {
-  const Beside beside = beside_of(columns, columns[k].name, columns[k].positions);
+  const BesideInRun beside = beside_of(columns, columns[k].name, columns[k].positions);
   if (!beside.run) return;
   struct Run {
     std::size_t readings = 0, zeros = 0, row = 0;
@@ -153,9 +153,9 @@ void note_zero_run(sheet::Sheet& sheet, const sheet::SheetTable& table,
   }
   const bool others = std::any_of(runs.begin(), runs.end(),
                                   [](const auto& one) { return 2 * one.second.zeros < one.second.readings; });
-  if (!others || runs.size() > kMostRuns) return;
+  if (!others || runs.size() > kMostComparedRuns) return;
   for (const auto& [name, run] : runs)
-    if (run.readings >= kFewestTargets && run.zeros == run.readings)
+    if (run.readings >= kFewestTargetsOfRun && run.zeros == run.readings)
       sheet.notes.push_back(fmt::format(
           "line {}: all {} deviations of run {} are 0, and those of other runs are not: was this run not "
           "measured? The values are read; if they are wrong, delete them",
@@ -188,7 +188,7 @@ void note_repeated_line(sheet::Sheet& sheet, const sheet::SheetTable& table) {
 
 std::optional<std::pair<std::string, std::string>> opposite_run(
     const std::map<std::string, RunDeviations>& runs) {
-  if (runs.size() < 2 || runs.size() > kMostRuns) return std::nullopt;
+  if (runs.size() < 2 || runs.size() > kMostComparedRuns) return std::nullopt;
   for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
     std::size_t opposite = 0, others = 0;
     std::string other;
