@@ -293,6 +293,48 @@ async function printer(page) {
   await words(page, '#export-result', 'klipper-with_bed-fitted/');
 }
 
+/** A square that a printer printed: its sides and diagonals by the names of its corners, without their positions. */
+async function caliper(page) {
+  await page.evaluate("document.getElementById('new-machine').open = true");
+  await page.evaluate("document.querySelector('#begin [data-command=new]').open = true");
+  await page.type('#new-axes', 'X:0:235 Y:0:235 Z:0:250');
+  await page.choose('#begin [data-option=errors]', 'square');
+  await page.type('#new-name', 'square');
+  await page.click('#make-machine');
+  await chosen(page, 'square.xml');
+  await page.drop([{ name: 'caliper.csv', text: 'Strecke;Soll;Ist\nAC;240,42;240,28\nAD;170,00;169,93\nBD;240,42;240,57\n' }]);
+  await words(page, '#sheet-message', 'the rows are distances between named points');
+  assert.ok(!/--|vernier /.test(await text(page, '#sheet-message')), await text(page, '#sheet-message'));
+  const stand = async (point, position) => {
+    for (const [axis, value] of Object.entries(position)) await page.type(`#points [data-point="${point}"] [data-axis=${axis}]`, value);
+  };
+  await stand('A', { X: '30', Y: '30', Z: '0,2' });
+  await stand('B', { X: '200', Y: '30', Z: '0,2' });
+  await stand('C', { X: '30', Y: '200', Z: '0,2' });
+  await stand('D', { X: '200', Y: '200', Z: '0,2' });
+  await page.click('#take-points');
+  await words(page, '#sheet-message', 'or of C and D are exchanged, all distances agree');
+  assert.ok(await page.evaluate("document.getElementById('do-import').disabled"), 'not before the corners are right');
+  await stand('C', { X: '200' });
+  await stand('D', { X: '30' });
+  await page.type('#import-box [data-option=set]', 'u[mm]=0.02');
+  await page.click('#take-points');
+  await page.until("!document.getElementById('sheet-message') && !document.getElementById('do-import').disabled", 'the corners');
+  await picture(page, 'caliper', '#points');
+  await page.click('#do-import');
+  await measured(page, 'caliper_read.csv');
+  assert.equal(
+    await page.evaluate("document.querySelector('#history li:last-child code').textContent"),
+    "vernier import table caliper.csv --set 'u[mm]=0.02' --point A=30,30,0.2 --point B=200,30,0.2 --point C=200,200,0.2 --point D=30,200,0.2 --machine square.xml -o caliper_read.csv",
+  );
+  await page.until("document.body.dataset.subject === 'yes'", 'the rows');
+  await view(page, 'add');
+  await page.click('#fit');
+  await chosen(page, 'square-fitted.xml');
+  // The squareness of the page touch.
+  assert.match(readFileSync(join(folder, 'square-fitted.xml'), 'utf8'), /EC0Y value="0\.00120/);
+}
+
 /** Waits until a file of the project has a text. */
 async function has(name, part) {
   for (let i = 0; i < 200 && !readFileSync(join(folder, name), 'utf8').includes(part); ++i)
@@ -623,4 +665,7 @@ async function looks(page) {
 }
 
 assert.ok(bin && data);
-await journey({ shop, printer, robot, again, looks }, { shop: /422/, printer: /422/, robot: /422/, again: /422/, looks: /422/ });
+await journey(
+  { shop, printer, caliper, robot, again, looks },
+  { shop: /422/, printer: /422/, caliper: /422/, robot: /422/, again: /422/, looks: /422/ },
+);

@@ -93,6 +93,36 @@ TEST(Sheets, ADoubtfulUnitIsConfirmedByTheMeaningOfItsColumn) {
   EXPECT_FALSE(confirmed["columns"][1].contains("doubt"));
 }
 
+TEST_F(Desk, PointsOfDistancesAreAskedForAndTaken) {
+  write_file(folder.in("square.csv"), "Strecke;Soll;Ist\nAB;60;60,1\nAC;100;99,9\n");
+  write_file(
+      folder.in("xy.xml"),
+      "<machine name=\"m\"><variables><machineaxes><X min=\"0\" max=\"300\"/><Y min=\"0\" max=\"300\"/>"
+      "</machineaxes></variables><transforms><sixdof n=\"1\" X=\"X\" Y=\"Y\"/></transforms></machine>");
+  const auto ask = [&](json request) {
+    request["name"] = "square.csv";
+    return json::parse(api.reply({"POST", "/api/sheet", {}, request.dump()}).body);
+  };
+  const json open = ask({{"machine", "xy.xml"}});
+  EXPECT_EQ(open["points"]["names"], (json{"A", "B", "C"})) << open;
+  EXPECT_EQ(open["points"]["missing"], open["points"]["names"]);
+  EXPECT_EQ(open["points"]["axes"][1], (json{{"name", "Y"}, {"unit", "mm"}}));
+  EXPECT_NE(open["message"].get<std::string>().find("--point \"A=X,Y\""), std::string::npos) << open;
+  EXPECT_EQ(open["columns"].dump().find("doubt"), std::string::npos);
+  const json read = ask({{"machine", "xy.xml"}, {"point", {"A=0,0", "B=60,0", "C=60,80"}}});
+  EXPECT_TRUE(read["message"].is_null()) << read;
+  EXPECT_EQ(read["n_rows"], 5);
+  // The table stays that of the file.
+  EXPECT_EQ(read["columns"].size(), 3u);
+  EXPECT_EQ(read["rows"][1][0], "A-C");
+  // A list needs the axes of a machine; a tolerance is a number of the request.
+  write_file(folder.in("list.csv"), "Punkt;X [mm];Y [mm]\nA;0;0\nB;61;0\nC;60;80\n");
+  EXPECT_NE(ask({{"nominal", "list.csv"}})["message"].get<std::string>().find("choose a machine"),
+            std::string::npos);
+  EXPECT_FALSE(ask({{"machine", "xy.xml"}, {"nominal", "list.csv"}})["message"].is_null());
+  EXPECT_TRUE(ask({{"machine", "xy.xml"}, {"nominal", "list.csv"}, {"tolerance", 2}})["message"].is_null());
+}
+
 TEST(Sheets, WordsOfARequestAreTextsAndLists) {
   EXPECT_EQ(sheet_words(json{{"column", {"X[mm]=1"}}, {"skip", 2}}).skip, 2u);
   const importer::SheetWords words = sheet_words(json{{"fill", {"T"}}, {"one-motion", true}});

@@ -2,6 +2,7 @@
 #include "tools/workbench/files/file_desk.h"
 
 #include <cmath>
+#include <optional>
 
 #include "tools/format/csv_file.h"
 #include "tools/format/urdf_chain.h"
@@ -85,13 +86,17 @@ ApiReply FileDesk::sheet(const ApiRequest& request) {
   const auto json = body_json(request);
   const std::string name = text_at(json, "name");
   importer::SheetWords words = sheet_words(json);
+  std::optional<model::Machine> machine;
+  const auto reads = [&](const std::string& file) {
+    return text::read_file(project_.existing(file).string());
+  };
   if (json.contains("machine") && json["machine"].is_string() &&
       !json["machine"].get<std::string>().empty()) {
-    const std::string machine = text_at(json, "machine");
-    for (const model::Axis& axis :
-         model::parse_machine(text::read_file(project_.existing(machine).string()), machine).axes)
-      words.axes.push_back(axis.name);
+    const std::string file = text_at(json, "machine");
+    machine = model::parse_machine(reads(file), file);
+    for (const model::Axis& axis : machine->axes) words.axes.push_back(axis.name);
   }
+  words.points = sheet_points(json, words, machine ? &*machine : nullptr, reads);
   return json_reply(sheet_preview(text::read_file(project_.existing(name).string()), name, words));
 }
 

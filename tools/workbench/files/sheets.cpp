@@ -7,6 +7,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/csv_file.h"
+#include "tools/import/logs/point_positions.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
@@ -44,6 +45,15 @@ Json first_lines(const std::string& csv) {
     at = end + 1;
   }
   return lines;
+}
+
+/// The points of a table of distances, for the fields of their positions: {"names", "axes": [{name, unit}],
+/// "missing"}.
+Json points_json(const importer::PointDistances& distances) {
+  Json axes = Json::array();
+  for (const importer::MissingAxis& axis : distances.axes)
+    axes.push_back({{"name", axis.name}, {"unit", axis.rotary ? "deg" : "mm"}});
+  return {{"names", distances.points}, {"axes", axes}, {"missing", distances.missing}};
 }
 
 /// True if one of the columns is a reading of the measurement format. Without one the headings are those of a
@@ -95,6 +105,7 @@ Json sheet_preview(const std::string& bytes, const std::string& file, const impo
                 reading.table.has_headings ? Json(sheet.line[reading.table.heading_row]) : Json(nullptr)},
                {"columns", importer::columns_json(reading)},
                {"rows", Json::array()}};
+  if (reading.distances) json["points"] = points_json(*reading.distances);
   // A doubt that the user can answer by confirming the meaning of the column.
   for (std::size_t k = 0; k < reading.columns.size(); ++k)
     if (!reading.columns[k].doubt.empty()) json["columns"][k]["doubt"] = reading.columns[k].doubt;
@@ -102,8 +113,7 @@ Json sheet_preview(const std::string& bytes, const std::string& file, const impo
        ++row)
     json["rows"].push_back(sheet.rows[row]);
   try {
-    const importer::ImportTable table =
-        importer::table_of_sheet(sheet, reading.table, reading.columns, reading.wishes);
+    const importer::ImportTable table = importer::table_of_reading(reading);
     json["csv"] = first_lines(importer::measurement_csv(table));
     json["n_rows"] = table.line.size();
     json["message"] = nullptr;
@@ -113,6 +123,18 @@ Json sheet_preview(const std::string& bytes, const std::string& file, const impo
     json["message"] = error.what();
   }
   return json;
+}
+
+importer::NamedPoints sheet_points(const nlohmann::json& request, const importer::SheetWords& words,
+                                   const model::Machine* machine, const ReadsFile& reads) {
+  importer::NamedPoints points =
+      importer::stated_points(list_or_none(request, "point"), words.constants, machine);
+  points.tolerance_mm = words.points.tolerance_mm;
+  const std::string list = text_or_none(request, "nominal");
+  if (!list.empty() && machine == nullptr)
+    throw text::InputError("choose a machine first: the list of positions has a column for each of its axes");
+  if (!list.empty()) importer::add_listed_points(points, words.constants, reads(list), list, *machine);
+  return points;
 }
 
 importer::SheetWords sheet_words(const nlohmann::json& request) {
@@ -133,6 +155,8 @@ importer::SheetWords sheet_words(const nlohmann::json& request) {
   words.left = list_or_none(request, "leave");
   words.constants = list_or_none(request, "set");
   words.fill = list_or_none(request, "fill");
+  if (const auto tolerance = request.find("tolerance"); tolerance != request.end() && tolerance->is_number())
+    words.points.tolerance_mm = tolerance->get<double>();
   const auto motion = request.find("one-motion");
   words.one_motion = motion != request.end() && motion->is_boolean() && motion->get<bool>();
   return words;

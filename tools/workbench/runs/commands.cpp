@@ -29,7 +29,7 @@ constexpr Allowed kAllowed[] = {
      "output measurements"},
     {"import table", false, true,
      "file separator decimal skip table sheet unit sign column deviation leave set fill one-motion "
-     "directions "
+     "directions point nominal tolerance "
      "check-every machine output! save-profile"},
     {"import ballbar", false, true, "files repair-time-base output"},
     {"import ballbar-trace", false, true, "files radius plane length feed output"},

@@ -4,6 +4,7 @@ import { freeName, getJson, postJson, run } from './api.js';
 import { byMachine, kNames } from './joints.js';
 import { optionFields } from './options.js';
 import { button, gate, guarded, pageWords, panel } from './parts.js';
+import { pointFields, pointsOnPage, pointWords } from './points.js';
 import { on, store } from './store.js';
 
 /** Columns that only the import of a tracker or of a probe understands. */
@@ -25,7 +26,7 @@ function likely(preview) {
 const withUnit = (one) => `${one.name}${one.unit ? `[${one.unit}]` : ''}`;
 
 /** What the table of columns and the preview say; all other options of the import have fields. */
-const kInTable = ['file', 'output', 'column', 'deviation', 'leave', 'sheet', 'machine'];
+const kInTable = ['file', 'output', 'column', 'deviation', 'leave', 'sheet', 'machine', 'point'];
 const kOfPreview = [...kInTable, 'separator', 'decimal', 'skip', 'header'];
 
 /** The name of a sheet as a part of the name of a file. */
@@ -34,7 +35,7 @@ const inFileName = (sheet) => sheet.replace(/[\s/\\:]+/g, '_');
 /** What the program says of a spreadsheet, in the words of the table of columns. */
 function onPage(message) {
   if (/\bvernier [a-z]/.test(message)) return message;
-  const words = message
+  const words = pointsOnPage(message)
     .replace(/; --preview shows.*$/, '')
     .replace(/ \(for all columns of this machine: --deviation [^)]*\)/, '')
     .replace(/--column "([^"=]+)=([^"]+)"/g, '"$2" is $1')
@@ -112,6 +113,7 @@ function columnRow(column, k, preview, change) {
  */
 export async function importSheet(box, name, handOver, asks = false) {
   const said = new Map(),
+    points = new Map(), // typed positions of points, by name
     read_into = new Map(), // the measurement file of each sheet that was imported
     tables = new Set(); // the sheets to import; two sheets that are read as one table count as one
   let kind = null,
@@ -132,8 +134,20 @@ export async function importSheet(box, name, handOver, asks = false) {
     return Object.fromEntries(Object.entries(lists).filter(([, list]) => list.length));
   };
   const ofSheet = () => (sheet ? { sheet } : {});
+  /** The positions of the points of distances, in the order of the axes of the machine. */
+  const ofPoints = () => {
+    const point = pointWords(points);
+    return point.length ? { point } : {};
+  };
   const ask = () =>
-    postJson('/api/sheet', { name, machine: store.machine, ...ofSheet(), ...forms.table.values(), ...columns() }).catch((why) => {
+    postJson('/api/sheet', {
+      name,
+      machine: store.machine,
+      ...ofSheet(),
+      ...forms.table.values(),
+      ...columns(),
+      ...ofPoints(),
+    }).catch((why) => {
       why.message = onPage(why.message);
       throw why;
     });
@@ -141,10 +155,10 @@ export async function importSheet(box, name, handOver, asks = false) {
     guarded(error, async () => {
       const several = preview.sheets.length > 1;
       const output = freeName(`${name.replace(/\.[^.]*$/, '')}_${several && sheet ? inFileName(sheet) : 'read'}`, '.csv');
-      const options = kind === 'table' ? { ...ofSheet(), ...columns() } : ofPreview(preview);
+      const options = kind === 'table' ? { ...ofSheet(), ...columns(), ...ofPoints() } : ofPreview(preview);
       const values = forms[kind].values();
-      // The list of nominal positions has the axes of the machine.
-      const machine = values.nominal && store.machine ? { machine: store.machine } : {};
+      // The list of nominal positions, and the position of a point, have the axes of the machine.
+      const machine = (values.nominal || options.point) && store.machine ? { machine: store.machine } : {};
       await run({ command: `import ${kind}`, file: name, ...options, ...values, ...machine, output });
       box.replaceChildren(
         panel(
@@ -259,7 +273,8 @@ export async function importSheet(box, name, handOver, asks = false) {
           : null,
         now.message && kind === 'table' ? el('p', { class: 'error', role: 'alert', id: 'sheet-message' }, onPage(now.message)) : null,
         now.message ? el('div', { class: 'controls', id: 'sheet-confirmations' }, confirmations(now)) : null,
-        byAxes(now),
+        now.points && kind === 'table' ? pointFields(now.points, points, () => draw()) : null,
+        now.points ? null : byAxes(now),
         el(
           'div',
           { class: 'controls' },
