@@ -46,13 +46,6 @@ constexpr std::uint32_t kMostHandles = 64;   // of all links together
 constexpr double kMostDelayMs = 10'000;      // of an output, for its budget
 constexpr int kWatchdogSeconds = 10;  // many drivers know whole seconds only; the unit's watchdog is quicker
 
-/// A real output of an axis.
-struct RealOutput {
-  std::size_t axis;  // of the board
-  OutputDevice* device;
-  std::uint32_t number;  // of the axis in the device
-};
-
 /// An output of the board file with its settings read. open: empty for a simulated output.
 struct NamedOutput {
   std::vector<std::uint32_t> axes;  // of the board, in the device's order
@@ -60,6 +53,13 @@ struct NamedOutput {
 };
 
 }  // namespace
+
+/// A real output of an axis.
+struct RealOutput {
+  std::size_t axis;  // of the board
+  OutputDevice* device;
+  std::uint32_t number;  // of the axis in the device
+};
 
 struct Devices::Parts {
   const BoardFile& file;
