@@ -267,6 +267,25 @@ std::string unread_in_words(const FitResult& result, const model::Measurement& m
                      fmt::join(names, " or "));
 }
 
+/// Readings of an arm that agree with its nominal chain to the rounding of a display: the control computed
+/// them from the joints.
+void add_computed_positions(const FitResult& result, const model::Measurement& m,
+                            std::vector<model::FitRecord::Finding>& list) {
+  constexpr std::size_t kArm = 5;      // turning axes
+  constexpr std::size_t kFewest = 30;  // readings: fewer can be fitted by the set-up
+  constexpr double kRounding_um = 1;   // of a display in um; the errors of arms are hundreds of um
+  const auto turning = std::count_if(result.machine.axes.begin(), result.machine.axes.end(),
+                                     [](const model::Axis& axis) { return axis.rotary; });
+  if (static_cast<std::size_t>(turning) < kArm || m.observations.size() < kFewest || !result.before.rms_um ||
+      *result.before.rms_um >= kRounding_um)
+    return;
+  list.push_back(
+      {"computed-positions", *result.before.rms_um,
+       fmt::format("The readings agree with the nominal machine within {:.2g} um: probably they are "
+                   "the positions that the control computes from its joints, and no measurement.",
+                   *result.before.rms_um)});
+}
+
 /// The axes with one position in all rows of the fit: how the other errors change along them was not
 /// measured.
 void add_axes_that_stood(const model::Machine& machine, const model::FitRecord& record,
@@ -359,6 +378,7 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                                 "counts as an error of the "
                                 "axes, at the position of the axes and not where the probe touched.",
                                 names)});
+  add_computed_positions(result, m, list);
   add_axes_that_stood(result.machine, record, list);
   add_rows_outside_travel(result.machine, m, list);
   const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],

@@ -31,8 +31,9 @@ Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurem
 /// another machine than that of the file), `flatness-assumed` (a probe beside the tool point touched a
 /// plane of unknown position, and no other reading determines a bow of the axes over this plane; value 0),
 /// `stood-still` (number of axes that had one position in all fit rows, while others moved),
-/// `outside-travel` (number of rows with a position outside the travel of its axis). `record`: the fit
-/// record, complete except for the findings.
+/// `outside-travel` (number of rows with a position outside the travel of its axis), `computed-positions` (an
+/// arm whose readings are those of its nominal chain; value: their rms, um). `record`: the fit record,
+/// complete except for the findings.
 std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, const model::FitRecord& record,
                                                    const model::Measurement& measurement);
 

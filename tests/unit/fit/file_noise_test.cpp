@@ -32,12 +32,12 @@ Machine machine() {
       "m.xml");
 }
 
-std::string laser(std::mt19937_64& random) {
+std::string laser(std::mt19937_64& random, double squareness = kSquareness) {
   std::normal_distribution<double> noise(0, 0.5e-3);
   std::string csv = "X[mm],Y[mm],Z[mm],x[mm],u[um]\n";
   for (int i = 0; i <= 20; ++i)
     csv += fmt::format("{},250,-200,{:.6f},0.5\n", 40 * i,
-                       40 * i * (1 + 30e-6) - kSquareness * 250 + noise(random));
+                       40 * i * (1 + 30e-6) - squareness * 250 + noise(random));
   return csv;
 }
 
@@ -82,6 +82,44 @@ TEST(FileNoise, AFileWithoutUGetsItsOwnNoise) {
       // 6 um / (144 mm * sqrt(75)) is 4.8 urad; the rotation of the set-up adds to it.
       EXPECT_LT(one.std, 7e-6);
     }
+}
+
+/// A scale of Y of 1 mm/m, ten times its plausible value, which the readings of the second file alone show.
+std::string of_scale(std::mt19937_64& random, int readings) {
+  std::normal_distribution<double> noise(0, kTracker_mm);
+  std::string csv = "X[mm],Y[mm],Z[mm],y[mm]\n";
+  for (int i = 0; i < readings; ++i) {
+    const double y = 500.0 * i / (readings - 1);
+    csv += fmt::format("400,{:.3f},-200,{:.6f}\n", y, y * (1 + 1e-3) + noise(random));
+  }
+  return csv;
+}
+
+TEST(FileNoise, AFileIsNotGivenUpForItsOwnError) {
+  const Machine plausible = parse_machine(
+      "<machine name=\"m\"><variables><static><sy value=\"0\" nominal=\"0\" scale=\"0.0001\"/>"
+      "<sx value=\"0\" nominal=\"0\"/></static>"
+      "<machineaxes><X min=\"0\" max=\"800\"/><Y min=\"0\" max=\"500\"/><Z min=\"-400\" max=\"0\"/>"
+      "</machineaxes></variables><transforms branch=\"tool\">"
+      "<sixdof X=\"X*(1+sx)\" Y=\"Y*(1+sy)\" Z=\"Z\"/></transforms></machine>",
+      "m.xml");
+  std::mt19937_64 random(20261201);
+  const auto survey = [&](int readings) {
+    Measurement rows = parse_measurement(laser(random, 0), "laser.csv", plausible);
+    append_measurement(rows, parse_measurement(of_scale(random, readings), "scale.csv", plausible));
+    return rows;
+  };
+  Measurement rows = survey(20);
+  const std::vector<FileNoise> noise = estimate_file_noise(plausible, rows);
+  ASSERT_EQ(noise.size(), 1u);
+  EXPECT_NEAR(noise[0].u, kTracker_mm, 4 * noise[0].std);
+  for (const ParameterEstimate& one : fit::fit(plausible, rows).estimates)
+    if (one.name == "sy") {
+      EXPECT_NEAR(one.value, 1e-3, 5e-5);
+    }
+  // Too few readings for an estimate are refused, not given the size of their error as u.
+  Measurement few = survey(5);
+  EXPECT_THROW(estimate_file_noise(plausible, few), text::InputError);
 }
 
 TEST(FileNoise, OutliersCountAsThreeStandardDeviations) {

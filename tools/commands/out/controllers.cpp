@@ -102,7 +102,8 @@ void print_tables(const ExchangeArguments& common, const exchange::ControllerTab
                  exchange::kLetters[i], tables.between_um[i], common.tolerance_um);
   std::string without_reversal;
   for (const exchange::ControllerTable& table : tables.tables)
-    if (table.input == table.output && tables.reversal[table.input] == 0)
+    if (table.input == table.output && tables.reversal[table.input] == 0 &&
+        (table.reverse.empty() || table.reverse == table.forward))
       without_reversal +=
           (without_reversal.empty() ? "" : ", ") + std::string(exchange::kLetters[table.input]);
   if (!without_reversal.empty())

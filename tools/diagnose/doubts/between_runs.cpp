@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/diagnose/doubts/between_runs.h"
 
+#include <algorithm>
 #include <map>
 
 #include "tools/diagnose/doubts/shape.h"
@@ -9,9 +10,9 @@ namespace vernier::diagnose {
 namespace {
 
 /// The columns of the effect if its inputs and the time never changed, separately for each run. No columns if
-/// the rows have one run.
+/// the rows have one run. `width`: number of columns of one run.
 Eigen::MatrixXd one_size_for_each_run(const Evidence& evidence, const effects::Candidate& candidate,
-                                      const std::vector<double>& scanned) {
+                                      const std::vector<double>& scanned, Eigen::Index& width) {
   model::States constant = evidence.measurement().states;
   for (std::size_t k = 0; k < constant.input.size(); ++k)
     constant.input[k].setConstant(evidence.reference_of(k) + 1);  // where an effect of this input is not 0
@@ -21,6 +22,7 @@ Eigen::MatrixXd one_size_for_each_run(const Evidence& evidence, const effects::C
   for (std::size_t i = 0; i < evidence.rows().size(); ++i)
     runs[constant.run[evidence.rows()[i]]].push_back(static_cast<Eigen::Index>(i));
   if (runs.size() < 2) return {};
+  width = all.cols();
   Eigen::MatrixXd columns =
       Eigen::MatrixXd::Zero(all.rows(), all.cols() * static_cast<Eigen::Index>(runs.size()));
   Eigen::Index at = 0;
@@ -30,6 +32,28 @@ Eigen::MatrixXd one_size_for_each_run(const Evidence& evidence, const effects::C
     at += all.cols();
   }
   return columns;
+}
+
+/// The largest decrease of the BIC by a change between the runs: one size for each run, or one step from a
+/// run on, alone or beside a constant size. `of_runs`: whitened columns of each run, `width` columns a run.
+double decrease_by_change(const Evidence& evidence, const Eigen::MatrixXd& of_runs, Eigen::Index width,
+                          const Eigen::MatrixXd& beside) {
+  double best = bic_decrease(evidence, of_runs, beside, 0);
+  const Eigen::Index runs = of_runs.cols() / width;
+  const auto from = [&](Eigen::Index first) {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(of_runs.rows(), width);
+    for (Eigen::Index run = first; run < runs; ++run) sum += of_runs.middleCols(run * width, width);
+    return sum;
+  };
+  const Eigen::MatrixXd always = from(0);
+  for (Eigen::Index first = 1; first < runs; ++first) {
+    Eigen::MatrixXd both(of_runs.rows(), 2 * width);
+    both << from(first), always;
+    // The run of the step is found by the search.
+    best = std::max({best, bic_decrease(evidence, both.leftCols(width), beside, 1),
+                     bic_decrease(evidence, both, beside, 1)});
+  }
+  return best;
 }
 
 }  // namespace
@@ -44,7 +68,8 @@ bool change_between_runs_explains(const Evidence& evidence, const Pool& pool,
   };
   if (!in_time(item)) return false;
   const effects::Candidate& candidate = pool.candidate(item);
-  Eigen::MatrixXd of_runs = one_size_for_each_run(evidence, candidate, pool[item].scored.scanned);
+  Eigen::Index width = 0;
+  Eigen::MatrixXd of_runs = one_size_for_each_run(evidence, candidate, pool[item].scored.scanned, width);
   if (of_runs.cols() == 0 || !of_runs.allFinite() || !(of_runs.norm() > 0)) return false;
   evidence.whiten(of_runs);
   std::vector<std::size_t> others;
@@ -64,7 +89,7 @@ bool change_between_runs_explains(const Evidence& evidence, const Pool& pool,
     scanned += pool[one].scored.scanned.size();
   }
   const Eigen::MatrixXd beside = pool.columns(others);
-  return bic_decrease(evidence, of_runs, beside, 0) >
+  return decrease_by_change(evidence, of_runs, width, beside) >
          bic_decrease(evidence, named, beside, scanned) - distance;
 }
 

@@ -8,12 +8,12 @@
 namespace vernier::diagnose {
 
 /// True if a change between the runs explains the readings as well as one of the accepted effects `items`
-/// does: the same error with another size in each run, for example a squareness after a collision. It can be
-/// confused only with an effect that an input or the time drives, and only if this changes much more between
-/// the runs than within a run. A slow response to heat that begins again in each run is an example. The test
-/// compares the BIC of the effect, together with all such effects that move the readings in the same way, and
-/// of one size for each run, each in a model with the other accepted effects. The BIC of the change may be
-/// larger by less than `distance`.
+/// does: the same error with another size in each run, or with one step from a run on, for example a
+/// squareness after a collision. It can be confused only with an effect that an input or the time drives, and
+/// only if this changes much more between the runs than within a run. A slow response to heat that begins
+/// again in each run is an example. The test compares the BIC of the effect, together with all such effects
+/// that move the readings in the same way, and of the change, each in a model with the other accepted
+/// effects. The BIC of the change may be larger by less than `distance`.
 bool change_between_runs_explains(const Evidence& evidence, const Pool& pool,
                                   const std::vector<std::size_t>& items, std::size_t position,
                                   double distance);

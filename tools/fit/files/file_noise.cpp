@@ -184,6 +184,29 @@ std::optional<double> estimate_file(const model::Measurement& rows, const FitRes
   return std::abs(noise.u / before - 1);
 }
 
+/// The residual of a fit of the file alone, over its degrees of freedom: what the model leaves of these
+/// readings if no other reading contradicts it. mm or deg; nullopt: the fit does not show it.
+std::optional<double> value_alone(const model::Machine& machine, const model::Measurement& rows,
+                                  const FileNoise& noise) {
+  model::Measurement own = fit_rows_of(rows, noise);
+  FileNoise alone = noise;
+  alone.file = own.file.front();
+  // The weights of all readings are equal, and so large that no plausible value of a parameter limits the
+  // fit.
+  constexpr double kSmall = 1e-3;
+  alone.u = std::max(kLeastEstimate, kSmall * noise.u);
+  write_estimate(own, alone);
+  FitOptions independent;
+  independent.noise = NoiseModel{};
+  const FitResult result = fit(machine, own, independent);
+  const double readings = static_cast<double>(residuals_of(own, alone, result.residual).size());
+  if (!result.converged || readings == 0) return std::nullopt;
+  estimate_file(own, result, alone);
+  alone.freedom = std::max(1.0, alone.freedom);
+  take_residuals(residuals_of(own, alone, result.residual), alone);
+  return alone.u;
+}
+
 /// Repeats fits and estimates until the estimates do not change. `rows` and `list` have first values. Returns
 /// an entry with too few degrees of freedom for an estimate, or null.
 const FileNoise* iterate_estimates(const model::Machine& machine, model::Measurement& rows,
@@ -203,6 +226,33 @@ const FileNoise* iterate_estimates(const model::Machine& machine, model::Measure
     for (const FileNoise& noise : list) write_estimate(rows, noise);
   }
   for (FileNoise& noise : list) noise.open = !noise.from_repeats() && change > kSettledEstimate;
+  return nullptr;
+}
+
+/// A first value that is too large can repeat itself: the weight of the file is then too small for its
+/// readings to change the machine, and its errors remain in the residual. If the fit of the file alone leaves
+/// much less than `list` has, the estimate begins again with that value; and if it stays there, or too few
+/// degrees of freedom remain, it is the answer. Parameters as iterate_estimates().
+const FileNoise* begin_again_small(const model::Machine& machine, model::Measurement& rows,
+                                   std::vector<FileNoise>& list) {
+  std::vector<FileNoise> small = list;
+  bool any = false;
+  for (FileNoise& noise : small) {
+    if (noise.from_repeats()) continue;
+    const std::optional<double> alone = value_alone(machine, rows, noise);
+    if (!alone || noise.u < kOtherInstrument * *alone) continue;
+    noise.u = *alone;
+    any = true;
+  }
+  if (!any) return nullptr;
+  model::Measurement changed = rows;
+  for (const FileNoise& noise : small) write_estimate(changed, noise);
+  if (const FileNoise* const few = iterate_estimates(machine, changed, small)) {
+    list = small;
+    return &list[static_cast<std::size_t>(few - small.data())];
+  }
+  list = std::move(small);
+  rows = std::move(changed);
   return nullptr;
 }
 
@@ -256,6 +306,8 @@ std::vector<FileNoise> estimate_file_noise(const model::Machine& machine, model:
   model::Measurement estimated = rows;
   for (const FileNoise& noise : list) write_estimate(estimated, noise);
   const FileNoise* few = all_from_repeats(list) ? nullptr : iterate_estimates(machine, estimated, list);
+  if (few == nullptr && others_have && !all_from_repeats(list))
+    few = begin_again_small(machine, estimated, list);
   if (few != nullptr && others_have) refuse_few_readings(*few, readings_of(rows, *few));
   if (!others_have && (few != nullptr || !differ_clearly(list))) return {};
   rows = std::move(estimated);

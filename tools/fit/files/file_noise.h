@@ -39,7 +39,8 @@ struct FileNoise {
 /// - otherwise the residual of the file beside a fit of all files, over its degrees of freedom (readings
 ///   minus the trace of their part of the hat matrix). The fit is repeated with the estimate until the
 ///   estimate changes by less than 2 % (variance components: W. Förstner 1979). Outliers count as three
-///   standard deviations.
+///   standard deviations. The first value is the residual of the given machine; if the fit of the file alone
+///   leaves less than a third of the result, the estimate begins again with that residual.
 /// The function writes the estimates into `rows` (also for check rows of the file). Files without fit rows do
 /// not change. Returns the estimates; empty if all fit readings have u, or if none has and
 /// the files are alike. Throws InputError if a

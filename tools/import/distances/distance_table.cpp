@@ -410,6 +410,10 @@ class Maker {
           {constant.name, constant.unit,
            std::vector<std::string>(table.line.size(), constant_cell(constant, sheet_.decimal_comma))});
     }
+    if (table.find(columns::kUncertainty) == nullptr)
+      result_.notes.push_back(
+          "no standard uncertainty of the distances: a fit beside other readings needs it; state that of the "
+          "caliper, for example --set \"u[mm]=0.02\"");
     std::string repeated;
     if (measured.size() > pairs_of(measured))
       repeated = fmt::format(", {} of them repeated", measured.size() - pairs_of(measured));

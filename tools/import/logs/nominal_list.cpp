@@ -147,6 +147,29 @@ std::vector<std::size_t> rows_by_number(const ImportTable& points, const List& l
   return rows;
 }
 
+/// Positions of a reflector at an unknown place on the tool: the place in the frame of the tool and the rigid
+/// motion that agree best with the points `to`, each found for the other in turn.
+Eigen::Matrix3Xd reflector_positions(const model::Poses& nominal, const Eigen::Matrix3Xd& to) {
+  constexpr int kMostTurns = 500;
+  constexpr double kSettled_mm = 1e-4;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  Eigen::Matrix3Xd from = nominal.position;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    const maths::RigidMotion motion = maths::align(from, to);
+    Eigen::Vector3d next = Eigen::Vector3d::Zero();
+    for (Eigen::Index i = 0; i < to.cols(); ++i)
+      next += nominal.rotation[static_cast<std::size_t>(i)].transpose() *
+              (motion.rotation.transpose() * (to.col(i) - motion.translation) - nominal.position.col(i));
+    next /= static_cast<double>(to.cols());
+    const bool settled = (next - place).norm() < kSettled_mm;
+    place = next;
+    for (Eigen::Index i = 0; i < to.cols(); ++i)
+      from.col(i) = nominal.position.col(i) + nominal.rotation[static_cast<std::size_t>(i)] * place;
+    if (settled) break;
+  }
+  return from;
+}
+
 /// Compares the points with the nominal tool points: a list in another order would give a false result.
 void check_distances(NominalTable& result, const model::Machine& machine, double tolerance_mm) {
   const ImportTable& table = result.table;
@@ -164,14 +187,16 @@ void check_distances(NominalTable& result, const model::Machine& machine, double
     const std::vector<double> values = table.numbers(machine.axes[a].name);
     states.axis[a] = Eigen::Map<const Eigen::VectorXd>(values.data(), count);
   }
-  const Eigen::Matrix3Xd from = model::forward(model::nominal_machine(machine), states).position;
+  const model::Poses nominal = model::forward(model::nominal_machine(machine), states);
   Eigen::Matrix3Xd to(3, count);
   Eigen::Index row = 0;
   for (const char* name : format::columns::kPoint) {
     const std::vector<double> values = table.numbers(name);
     to.row(row++) = Eigen::Map<const Eigen::RowVectorXd>(values.data(), count);
   }
-  if (!maths::fixes_motion(from)) return;
+  if (!maths::fixes_motion(nominal.position)) return;
+  const Eigen::Matrix3Xd from =
+      machine.tool_shifts.empty() ? nominal.position : reflector_positions(nominal, to);
   const Eigen::VectorXd off = maths::aligned_error(maths::align(from, to), from, to).colwise().norm();
   result.rms_mm = std::sqrt(off.squaredNorm() / static_cast<double>(off.size()));
   constexpr double kBeyond = 3;  // tolerances, as in pair_points
@@ -181,9 +206,13 @@ void check_distances(NominalTable& result, const model::Machine& machine, double
       {table.file, table.line[static_cast<std::size_t>(worst)]}, "",
       fmt::format(
           "this point is {:.3g} mm from its nominal position after the best rigid motion of all points "
-          "({}): check the order and the names of both lists, or give a larger --tolerance",
+          "({}): check the order and the names of both lists{}, or give a larger --tolerance",
           off[worst],
-          result.names.empty() ? "joined by row number" : "joined by the names in " + result.names));
+          result.names.empty() ? "joined by row number" : "joined by the names in " + result.names,
+          machine.tool_shifts.empty()
+              ? "; if the points are those of a reflector at an unknown place on the tool, declare it in the "
+                "machine file (vernier set MACHINE --reflector)"
+              : ""));
 }
 
 }  // namespace
