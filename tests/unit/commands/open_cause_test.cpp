@@ -78,6 +78,15 @@ TEST(Improve, AddsNoHeatThatAChangeBetweenTheRunsExplainsAsWell) {
   EXPECT_THAT(result.said, HasSubstr("A change of the machine or of its set-up between the runs"));
 }
 
+/// The scale steps at the begin of a run, and the temperature steps too: one step from this run on has one
+/// coefficient, as the heat has, and a size for each of six runs has five too many.
+TEST(Improve, AddsNoHeatThatOneStepBetweenTheRunsExplainsAsWell) {
+  const Improved result = improve("collision_with_heat");
+  EXPECT_THAT(result.effects(), testing::IsEmpty());
+  EXPECT_EQ(result.json["verdict"], "ambiguous");
+  EXPECT_THAT(result.said, HasSubstr("A change of the machine or of its set-up between the runs"));
+}
+
 /// The readings step at each quarter of a run. A slow response to heat follows a part of the steps, and was
 /// added: the error at new poses became 1.1 times as large.
 TEST(Improve, AddsNoHeatForALoadThatChangesInStepsAndIsNotRecorded) {

@@ -469,6 +469,15 @@ async function unknownTool(page) {
   await words(page, '#fit-notes', 'The tool point of the machine file is probably not that of the measurement');
   assert.ok(!/--free|vernier new/.test(await text(page, '#fit-notes')), await text(page, '#fit-notes'));
   await picture(page, 'robot_tool', '#fit');
+  // Or the reflector is declared: the set-up has its place, and the axes do not correct it.
+  await page.click('#fit-reflector');
+  await page.until("[...document.querySelectorAll('#history code')].some((one) => one.textContent.includes('--reflector'))", 'set');
+  await chosen(page, 'arm-set-fitted.xml');
+  assert.ok(readFileSync(join(folder, 'arm-set-fitted.xml'), 'utf8').includes('<ToolShift'));
+  await page.choose('#machine', 'arm.xml');
+  await page.until("document.body.dataset.subject === 'yes'", 'the rows');
+  await page.click('#fit');
+  await words(page, '#fit-notes', 'The tool point of the machine file is probably not that of the measurement');
   await page.click('#fit-tool');
   await page.until("document.getElementById('command').textContent.includes('--free TPX,TPY,TPZ')", 'the fit of the tool point');
   await page.until("document.getElementById('fit-notes').textContent === ''", 'the note to go');

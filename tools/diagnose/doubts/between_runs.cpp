@@ -49,9 +49,9 @@ double decrease_by_change(const Evidence& evidence, const Eigen::MatrixXd& of_ru
   for (Eigen::Index first = 1; first < runs; ++first) {
     Eigen::MatrixXd both(of_runs.rows(), 2 * width);
     both << from(first), always;
-    // The run of the step is found by the search.
-    best = std::max({best, bic_decrease(evidence, both.leftCols(width), beside, 1),
-                     bic_decrease(evidence, both, beside, 1)});
+    // The run of the step is one of a few: its choice costs less than a reading.
+    best = std::max({best, bic_decrease(evidence, both.leftCols(width), beside, 0),
+                     bic_decrease(evidence, both, beside, 0)});
   }
   return best;
 }

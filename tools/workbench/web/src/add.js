@@ -44,7 +44,16 @@ function notesOfFit(machine, label, options, notes) {
   const fit = button('Fit the tool point too', () => guarded(box, () => fitInto(machine, `${label}, with its tool point`, more)), {
     id: 'fit-tool',
   });
-  box.append(fit);
+  const reflector = button('The reflector is at another, unknown place', () => guarded(box, declareReflector), { id: 'fit-reflector' });
+  box.append(el('div', { class: 'controls' }, fit, reflector));
+}
+
+/** The readings are those of a reflector at an unknown place on the tool: a part of the set-up, no error of the machine. */
+export async function declareReflector() {
+  const output = freeName(`${stem(store.machine)}-set`, '.xml');
+  await run({ command: 'set', machine: store.machine, reflector: true, output });
+  location.hash = '#add';
+  await fitInto(output, 'with a reflector at an unknown place');
 }
 
 /** Adds an effect to the machine that is chosen and fits it: before and after on the same scale. */

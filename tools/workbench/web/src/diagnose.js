@@ -3,7 +3,7 @@ import { choice, el, table } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
 import { next, title, verdict } from '../../../report/web/src/diagnosis.js';
 import { fileAddress, freeName, run } from './api.js';
-import { addEffect } from './add.js';
+import { addEffect, declareReflector } from './add.js';
 import { ladderFigure } from './charts.js';
 import { moreOptions } from './options.js';
 import { showExplanation } from './overlay.js';
@@ -232,7 +232,14 @@ export function diagnoseView(root) {
     words.id = 'verdict';
     const plots = [overlayPlot(), vectorPlot(300, 'Residual vectors and what the candidate would explain')];
     box.replaceChildren(
-      panel('Verdict', words, ladderFigure(result)),
+      panel(
+        'Verdict',
+        words,
+        /--reflector/.test(result.explanation)
+          ? button('Declare the reflector', () => guarded(error, declareReflector), { id: 'declare-reflector' })
+          : null,
+        ladderFigure(result),
+      ),
       panel(
         'Candidates',
         result.candidates.length ? candidateTable(result, error, details) : el('p', { class: 'note' }, 'None.'),

@@ -21,7 +21,7 @@ const proposed = (message) =>
  * `error`: where a refusal is shown; `byHand`: a button beside it; `prefix`: of the ids.
  */
 export function byMachine(file, { error, byHand = null, done, prefix = '' }) {
-  const answers = el('div', { class: 'controls' });
+  const answers = el('div', {});
   const read = (column) =>
     guarded(error, async () => {
       const output = freeName(`${file.replace(/\.[^.]*$/, '')}_read`, '.csv');
@@ -40,15 +40,16 @@ export function byMachine(file, { error, byHand = null, done, prefix = '' }) {
       error.replaceChildren(el('p', { class: 'error', role: 'alert' }, kByHand));
       return;
     }
-    error.replaceChildren(
+    error.replaceChildren();
+    answers.replaceChildren(
       el('p', { class: 'note', role: 'status' }, 'As many columns may be the axes, in the order of the machine file:'),
       el(
         'ul',
         {},
         columns.map((one) => el('li', {}, `${one.replace(/=.*$/, '')}: "${one.replace(/^[^=]*=/, '')}"`)),
       ),
+      button('This assignment is right', () => read(columns), { id: `${prefix}assignment-is-right` }),
     );
-    answers.replaceChildren(button('This assignment is right', () => read(columns), { id: `${prefix}assignment-is-right` }));
   };
   const byName = button('Read the columns as the axes of the machine', () => read([]), { id: `${prefix}by-machine` });
   return el('div', {}, el('div', { class: 'controls' }, byName, byHand), answers);

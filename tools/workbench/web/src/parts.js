@@ -43,6 +43,7 @@ const toolWords = (whole, names) =>
 export const programWords = (words) =>
   words
     ?.replace(kTool, toolWords)
+    .replace(/: vernier set \S+ --reflector -o NEW\.xml declares it/g, ': press "Declare the reflector"')
     .replace(
       / \(import table --directions from-order\)/g,
       ' under Project: press "read differently" beside the file, and choose "from-order" in the field "directions"',
