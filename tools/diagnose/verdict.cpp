@@ -181,7 +181,7 @@ class Decision {
 
   std::string not_down_to_noise() {
     compare_with_alternatives();
-    if (is_noise_ || is_explained_on_check() || leaves_a_small_structure()) return {};
+    if (is_noise_ || is_explained_on_check() || leaves_a_small_structure() || explains_most()) return {};
     return (is_of_the_size_of_noise()
                 ? "Effects of the catalogue reduce the residual to the size of the noise, but the residual "
                   "still "
@@ -209,6 +209,26 @@ class Decision {
     if (!stands(1)) return false;
     for (std::size_t step = 2; step < answer_.ladder.size(); ++step)
       if (!stands(step)) answer_.ladder[step].certain = false;
+    return true;
+  }
+
+  /// The first step explains most of the error beyond u, no other cause does, and the check rows confirm it:
+  /// it is named, whatever the rest is, and the sentence says that the rest is not noise.
+  bool explains_most() {
+    const std::vector<LadderStep>& ladder = answer_.ladder;
+    const std::size_t cause = accepted_.front();
+    const double before = ladder[0].chi_square_per_freedom - 1, after = ladder[1].chi_square_per_freedom - 1;
+    if (!fit::has_uncertainty(found_.measurement) || !found_.confirmed.contains(cause) ||
+        pool_.is_custom(cause) || !found_.close(0).empty() ||
+        before - after < limits_.most_of_excess * before)
+      return false;
+    // A later step is certain if it explains more than it leaves.
+    for (std::size_t step = 2; step < ladder.size(); ++step) {
+      const double left = ladder[step].chi_square_per_freedom;
+      if (!found_.close(step - 1).empty() || !found_.confirmed.contains(accepted_[step - 1]) ||
+          ladder[step - 1].chi_square_per_freedom - left < left - 1)
+        answer_.ladder[step].certain = false;
+    }
     return true;
   }
 
