@@ -47,10 +47,11 @@ TargetResult result_at(const TargetReadings& readings) {
     result.count[sense] = list.size();
     if (list.empty()) continue;
     if (list.size() == 1)
-      throw text::InputError(
-          fmt::format("the file has only one reading at {}{}: a standard deviation needs at least two "
-                      "readings, ISO 230-2 requires five",
-                      text::number_text(readings.target), sense == 0 ? " forward" : " backward"));
+      throw text::InputError(fmt::format(
+          "the file has only one reading at {}{}: a standard deviation needs at least two "
+          "readings, ISO 230-2 requires five. If the file has no directions and all runs go one way, state "
+          "the direction of all rows (import table --set \"dirX=1\", with the name of the axis)",
+          text::number_text(readings.target), sense == 0 ? " forward" : " backward"));
     result.mean[sense] = mean_of(list);
     result.spread[sense] = spread_of(list, result.mean[sense]);
     result.repeatability[sense] = 4 * result.spread[sense];

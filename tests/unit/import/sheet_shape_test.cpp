@@ -251,6 +251,15 @@ TEST(SheetTitle, ATitleOfAnotherAxisIsRefusedWithBothRemedies) {
     EXPECT_THAT(read(along_x({"1", "2", "3"}, other)), testing::StartsWith("X[mm],x[mm]\n")) << other;
 }
 
+TEST(SheetTitle, OfARisingOrFallingRunIsADirection) {
+  const std::string two =
+      "Messreihe 1 steigend\nX [mm];dX [um]\n0;1\n50;2\n100;3\n\nMessreihe 2 fallend\nX [mm];dX "
+      "[um]\n100;4\n50;5\n0;6\n";
+  SheetWords words;
+  words.table = 2;
+  EXPECT_THAT(read(two, words), testing::HasSubstr("100,100.004,-1,2\n50,50.005,-1,2\n0,0.006,-1,2\n"));
+}
+
 TEST(SheetTitle, TheRunOfATitleIsReadWithItsTable) {
   const std::string tables =
       "Lauf 1 vorwärts\nX [mm];dX [um]\n0;1\n50;2\n100;3\n\nLauf 2 rückwärts\nX [mm];dX "

@@ -131,12 +131,15 @@ std::vector<ConfigurationFile> klipper(const PresentSetting& present, const std:
                         profile, skew.xy, skew.xz, skew.yz);
   }
   if (correction.has_mesh()) text += klipper_mesh(correction.mesh, profile);
-  std::string steps =
-      steps_lines(present, correction, "# rotation_distance of the steppers, in mm per turn\n", true,
-                  [](std::size_t i, double next) {
-                    return fmt::format("[stepper_{}]\nrotation_distance: {:.6f}\n",
-                                       static_cast<char>('x' + static_cast<int>(i)), next);
-                  });
+  std::string steps = steps_lines(
+      present, correction,
+      "# rotation_distance of the steppers, in mm per turn. Include this file below the sections of these\n"
+      "# steppers in printer.cfg, because a later value replaces an earlier one, or write the values "
+      "there.\n",
+      true, [](std::size_t i, double next) {
+        return fmt::format("[stepper_{}]\nrotation_distance: {:.6f}\n",
+                           static_cast<char>('x' + static_cast<int>(i)), next);
+      });
   std::vector<ConfigurationFile> files;
   if (correction.has_mesh() || !correction.no_skew) files.push_back({profile + ".cfg", text});
   if (!steps.empty()) files.push_back({profile + "_steppers.cfg", steps});

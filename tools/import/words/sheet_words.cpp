@@ -99,11 +99,12 @@ const WordSet kStatisticWords = {
     "moyenne", "écart-type", "mittelwerts", "umkehrspanne", "umkehrspannen", "umkehrfehler", "umkehrspiel",
     // Signs of a mean and of a standard deviation; Ø has no small letter here.
     "x\u0304", "x\u0305", "ø", "Ø", "⌀", "∅", "σ", "2σ", "3σ"};
-const WordSet kForthWords = {
-    "1",        "+1",      "+",          "forward",  "fwd",    "forth",        "up",      "pos",
-    "positive", "positiv", "vor",        "vorwärts", "hin",    "auf",          "plus",    "cw",
-    "aller",    "\u2191",  "\u2192",     "hinfahrt", "hinweg", "andata",       "vorlauf", "ida",
-    "heen",     "tam",     "prz\u00f3d", "fram",     "frem",   "\u6b63\u5411", "avanti"};
+const WordSet kForthWords = {"1",      "+1",       "+",           "forward",    "fwd",       "forth",
+                             "up",     "pos",      "positive",    "positiv",    "vor",       "vorwärts",
+                             "hin",    "auf",      "plus",        "cw",         "aller",     "\u2191",
+                             "\u2192", "hinfahrt", "hinweg",      "andata",     "vorlauf",   "ida",
+                             "heen",   "tam",      "prz\u00f3d",  "fram",       "frem",      "\u6b63\u5411",
+                             "avanti", "steigend", "aufsteigend", "ansteigend", "ascending", "increasing"};
 const WordSet kBackWords = {"-1",
                             "-",
                             "backward",
@@ -144,6 +145,11 @@ const WordSet kBackWords = {"-1",
                             "indietro",
                             "\u53cd\u5411",
                             "minus",
+                            "fallend",
+                            "absteigend",
+                            "abfallend",
+                            "descending",
+                            "decreasing",
                             "ccw",
                             "\u2212",
                             "\u2212"
