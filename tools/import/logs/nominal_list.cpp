@@ -150,7 +150,7 @@ std::vector<std::size_t> rows_by_number(const ImportTable& points, const List& l
 /// Positions of a reflector at an unknown place on the tool: the place in the frame of the tool and the rigid
 /// motion that agree best with the points `to`, each found for the other in turn.
 Eigen::Matrix3Xd reflector_positions(const model::Poses& nominal, const Eigen::Matrix3Xd& to) {
-  constexpr int kMostTurns = 500;
+  constexpr int kMostTurns = 500;  // each reduces the difference by the spread of the orientations
   constexpr double kSettled_mm = 1e-4;
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   Eigen::Matrix3Xd from = nominal.position;
