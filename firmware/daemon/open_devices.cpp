@@ -216,7 +216,7 @@ const std::vector<DeviceKind<OutputOf>> kOutputs = {
       "range", "polarity", "period_ms", "timeout_ms", "delay_ms"},
      modbus_out_of,
      modbus_block},
-    {"canopen", kCanopenOutputSettings, canopen_output_of},
+    {"canopen", canopen_output_settings(), canopen_output_of},
 };
 
 std::unique_ptr<SampledInput> open_modbus(const SignalSource& source, ModbusLines& lines,

@@ -19,9 +19,10 @@ std::unique_ptr<CanopenAxes> open_canopen_axes(const std::vector<PositionAxis>& 
 /// Reads the settings of an output of kind "canopen" for one axis. Throws BoardError if a setting is wrong.
 /// Not real-time safe.
 OutputOpener canopen_output_of(const std::vector<OutputAxis>& axes);
-inline const std::vector<const char*> kCanopenOutputSettings = {
-    "interface", "node", "object", "scale",        "range",      "polarity", "sync_us",
-    "sync",      "tpdo", "rpdo",   "heartbeat_ms", "timeout_ms", "pdo_test", "delay_ms"};
+inline std::vector<const char*> canopen_output_settings() {
+  return {"interface", "node", "object", "scale",        "range",      "polarity", "sync_us",
+          "sync",      "tpdo", "rpdo",   "heartbeat_ms", "timeout_ms", "pdo_test", "delay_ms"};
+}
 
 /// A CANopen drive takes one offset with each SYNC message. Throws BoardError in two cases: the ticks do not
 /// follow the SYNC of the drives of the outputs, or an identifier of a drive has another use. Not real-time

@@ -89,8 +89,11 @@ bool change_between_runs_explains(const Evidence& evidence, const Pool& pool,
     scanned += pool[one].scored.scanned.size();
   }
   const Eigen::MatrixXd beside = pool.columns(others);
-  return decrease_by_change(evidence, of_runs, width, beside) >
-         bic_decrease(evidence, named, beside, scanned) - distance;
+  // A recorded heat or load can step as the machine did. The number of visits steps with each run anyway.
+  const double by_change = candidate.choice.inputs.empty()
+                               ? bic_decrease(evidence, of_runs, beside, 0)
+                               : decrease_by_change(evidence, of_runs, width, beside);
+  return by_change > bic_decrease(evidence, named, beside, scanned) - distance;
 }
 
 }  // namespace vernier::diagnose
