@@ -116,6 +116,12 @@ std::string difference_in_words(const std::string& own, const std::vector<std::s
       own, fmt::join(others, "; "));
 }
 
+std::string step_between_runs_in_words() {
+  return " One change of the machine between two runs, such as a collision, at the time when this input "
+         "changed "
+         "too, would explain the readings as well: measure again at the first value of the input.";
+}
+
 std::string reflector_in_words(const std::string& machine_file) {
   return fmt::format(
       " If the readings are those of a reflector at an unknown place on the tool, this offset is no error of "

@@ -46,6 +46,10 @@ std::string cause_in_words(const CandidateFinding& cause, const std::string& nex
 std::string aliases_in_words(const effects::Candidate& candidate, double period,
                              const std::vector<double>& aliases, const model::Axis& axis);
 
+/// Returns the sentence about one step of the machine between two runs that explains the readings as well as
+/// the named effect of an input.
+std::string step_between_runs_in_words();
+
 /// Returns the sentence about an offset of the tool point that can be the place of a reflector on the tool,
 /// with the command that declares this place.
 std::string reflector_in_words(const std::string& machine_file);

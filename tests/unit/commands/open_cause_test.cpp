@@ -78,13 +78,11 @@ TEST(Improve, AddsNoHeatThatAChangeBetweenTheRunsExplainsAsWell) {
   EXPECT_THAT(result.said, HasSubstr("A change of the machine or of its set-up between the runs"));
 }
 
-/// The scale steps at the begin of a run, and the temperature steps too: one step from this run on has one
-/// coefficient, as the heat has, and a size for each of six runs has five too many.
-TEST(Improve, AddsNoHeatThatOneStepBetweenTheRunsExplainsAsWell) {
+/// The scale steps at the begin of a run, and the temperature steps too: no row separates the two.
+TEST(Improve, SaysThatOneStepBetweenTheRunsExplainsAHeatAsWell) {
   const Improved result = improve("collision_with_heat");
-  EXPECT_THAT(result.effects(), testing::IsEmpty());
-  EXPECT_EQ(result.json["verdict"], "ambiguous");
-  EXPECT_THAT(result.said, HasSubstr("A change of the machine or of its set-up between the runs"));
+  EXPECT_THAT(result.said, HasSubstr("One change of the machine between two runs, such as a collision"));
+  EXPECT_THAT(result.said, HasSubstr("measure again at the first value of the input"));
 }
 
 /// The readings step at each quarter of a run. A slow response to heat follows a part of the steps, and was

@@ -34,11 +34,11 @@ Eigen::MatrixXd one_size_for_each_run(const Evidence& evidence, const effects::C
   return columns;
 }
 
-/// The largest decrease of the BIC by a change between the runs: one size for each run, or one step from a
-/// run on, alone or beside a constant size. `of_runs`: whitened columns of each run, `width` columns a run.
-double decrease_by_change(const Evidence& evidence, const Eigen::MatrixXd& of_runs, Eigen::Index width,
-                          const Eigen::MatrixXd& beside) {
-  double best = bic_decrease(evidence, of_runs, beside, 0);
+/// The largest decrease of the BIC by one step from a run on, alone or beside a constant size. `of_runs`:
+/// whitened columns of each run, `width` columns a run.
+double decrease_by_step(const Evidence& evidence, const Eigen::MatrixXd& of_runs, Eigen::Index width,
+                        const Eigen::MatrixXd& beside) {
+  double best = 0;
   const Eigen::Index runs = of_runs.cols() / width;
   const auto from = [&](Eigen::Index first) {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(of_runs.rows(), width);
@@ -58,19 +58,19 @@ double decrease_by_change(const Evidence& evidence, const Eigen::MatrixXd& of_ru
 
 }  // namespace
 
-bool change_between_runs_explains(const Evidence& evidence, const Pool& pool,
-                                  const std::vector<std::size_t>& items, std::size_t position,
-                                  double distance) {
+ChangeBetweenRuns change_between_runs(const Evidence& evidence, const Pool& pool,
+                                      const std::vector<std::size_t>& items, std::size_t position,
+                                      double distance) {
   const std::size_t item = items[position];
   const auto in_time = [&](std::size_t one) {
     return pool.candidate(one).choice.runs.empty() &&
            change_in_time(drivers_of(evidence.machine(), pool.candidate(one)));
   };
-  if (!in_time(item)) return false;
+  if (!in_time(item)) return {};
   const effects::Candidate& candidate = pool.candidate(item);
   Eigen::Index width = 0;
   Eigen::MatrixXd of_runs = one_size_for_each_run(evidence, candidate, pool[item].scored.scanned, width);
-  if (of_runs.cols() == 0 || !of_runs.allFinite() || !(of_runs.norm() > 0)) return false;
+  if (of_runs.cols() == 0 || !of_runs.allFinite() || !(of_runs.norm() > 0)) return {};
   evidence.whiten(of_runs);
   std::vector<std::size_t> others;
   Eigen::MatrixXd named(of_runs.rows(), 0);
@@ -89,11 +89,10 @@ bool change_between_runs_explains(const Evidence& evidence, const Pool& pool,
     scanned += pool[one].scored.scanned.size();
   }
   const Eigen::MatrixXd beside = pool.columns(others);
+  const double least = bic_decrease(evidence, named, beside, scanned) - distance;
   // A recorded heat or load can step as the machine did. The number of visits steps with each run anyway.
-  const double by_change = candidate.choice.inputs.empty()
-                               ? bic_decrease(evidence, of_runs, beside, 0)
-                               : decrease_by_change(evidence, of_runs, width, beside);
-  return by_change > bic_decrease(evidence, named, beside, scanned) - distance;
+  return {bic_decrease(evidence, of_runs, beside, 0) > least,
+          !candidate.choice.inputs.empty() && decrease_by_step(evidence, of_runs, width, beside) > least};
 }
 
 }  // namespace vernier::diagnose
