@@ -2,14 +2,12 @@
 // The remedies that an import prints: as a user pastes them, with the options of the first call.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "tests/unit/commands/shell_folder.h"
 #include "tools/sheet/workbook_writer.h"
 #include "tools/text/files.h"
 
@@ -25,29 +23,15 @@ constexpr const char* kMachine =
   <machineaxes><X rotary="false" min="0" max="600"/><Y rotary="false" min="0" max="400"/></machineaxes></variables>
   <transforms><sixdof n="1" X="X" Y="Y+k*X" Z="0" rX="0" rY="0" rZ="0"/></transforms></machine>)xml";
 
-struct ImportRemedies : testing::Test {
-  ImportRemedies() {
-    fs::create_directories(folder);
-    text::write_file(folder + "/m.xml", kMachine);
-  }
-  ~ImportRemedies() override { fs::remove_all(folder); }
+struct ImportRemedies : commands_test::ShellFolder {
+  ImportRemedies() : ShellFolder("import_remedies") { text::write_file(folder + "/m.xml", kMachine); }
 
-  /// Exit status of shell commands; `said` holds their output.
-  int run(const std::string& commands) {
-    text::write_file(folder + "/call.sh", commands + "\n");
-    const int status = std::system(
-        ("cd '" + folder + "' && PATH=" VERNIER_BIN_DIR ":$PATH sh -e call.sh >said.txt 2>&1").c_str());
-    said = text::read_file(folder + "/said.txt");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
   /// The last command in the output, with a number for its POSITION.
   std::string remedy() const {
     std::string call = said.substr(said.rfind("vernier import"));
     for (std::size_t at = 0; (at = call.find("POSITION")) != std::string::npos;) call.replace(at, 8, "400");
     return call;
   }
-  const std::string folder = testing::TempDir() + "import_remedies_" + std::to_string(getpid());
-  std::string said;
 };
 
 TEST_F(ImportRemedies, OfATableKeepTheOptionsOfTheCall) {

@@ -3,12 +3,9 @@
 // nozzle.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -16,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/unit/commands/shell_folder.h"
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
 
@@ -52,22 +50,11 @@ std::string survey(double turn = 0.0014) {
   return text;
 }
 
-struct ProbedBed : testing::Test {
-  ProbedBed() {
-    fs::create_directories(folder);
+struct ProbedBed : commands_test::ShellFolder {
+  ProbedBed() : ShellFolder("probed_bed") {
     text::write_file(folder + "/p.xml", kMachine);
     text::write_file(folder + "/bed.csv", survey());
   }
-  ~ProbedBed() override { fs::remove_all(folder); }
-  int run(const std::string& command) {
-    text::write_file(folder + "/call.sh", command + "\n");
-    const int status = std::system(
-        ("cd '" + folder + "' && PATH=" VERNIER_BIN_DIR ":$PATH sh -e call.sh >said.txt 2>&1").c_str());
-    said = text::read_file(folder + "/said.txt");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  const std::string folder = testing::TempDir() + "probed_bed_" + std::to_string(getpid());
-  std::string said;
 };
 
 TEST_F(ProbedBed, ImproveAddsNoTermThatCheckRowsOfTheNozzleDoNotConfirm) {

@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 
+#include "tests/unit/commands/shell_folder.h"
 #include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
@@ -22,8 +19,6 @@ namespace vernier::reflector_test {
 using testing::HasSubstr;
 using testing::Not;
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kReflector_mm = 40, kU_mm = 0.02;
 
@@ -62,22 +57,12 @@ std::string survey(std::string robot) {
   return measured;
 }
 
-struct Reflector : testing::Test {
-  Reflector() {
-    fs::create_directories(folder);
+struct Reflector : commands_test::ShellFolder {
+  Reflector() : ShellFolder("reflector") {
+    const std::string robot = text::read_file(VERNIER_SOURCE_DIR "/tables/machines/ur10e.xml");
     text::write_file(folder + "/robot.xml", robot);
     text::write_file(folder + "/points.csv", survey(robot));
   }
-  ~Reflector() override { fs::remove_all(folder); }
-  int run(const std::string& command) {
-    text::write_file(folder + "/call.sh", command + "\n");
-    const int status = std::system(
-        ("cd '" + folder + "' && PATH=" VERNIER_BIN_DIR ":$PATH sh -e call.sh >said.txt 2>&1").c_str());
-    said = text::read_file(folder + "/said.txt");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  std::string robot = text::read_file(VERNIER_SOURCE_DIR "/tables/machines/ur10e.xml");
-  std::string folder = testing::TempDir() + "reflector_" + std::to_string(getpid()), said;
 };
 
 TEST_F(Reflector, IsNamedBesideAnOffsetOfTheToolPoint) {

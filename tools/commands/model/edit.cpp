@@ -50,37 +50,37 @@ struct SetArguments {
   bool reflector = false;
 };
 
+/// The machine text with `lines` at the end of an element.
+std::string with_lines(const std::string& text, const std::string& file, const char* element,
+                       const std::string& lines) {
+  pugi::xml_document document;
+  document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+  const pugi::xml_node found = effects::element_named(document, element);
+  if (!found)
+    throw text::InputError({file, 0}, element,
+                           fmt::format("the machine file has no <{}> element; add one", element));
+  return text::apply_edits(text, {effects::at_end_of(text, found, lines)});
+}
+
 /// The machine text with <ToolShift/> at the end of <static>.
 std::string with_reflector(const std::string& text, const SetArguments& arguments) {
   if (!arguments.reflector) return text;
-  pugi::xml_document document;
-  document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
-  const pugi::xml_node statics = effects::element_named(document, "static");
-  if (!statics)
-    throw text::InputError({arguments.machine, 0}, "static",
-                           "the machine file has no <static> element; add one");
   if (!model::parse_machine(text, arguments.machine).tool_shifts.empty())
     throw text::InputError({arguments.machine, 0}, "ToolShift",
                            "the machine file already declares what is at an unknown place on the tool");
-  return text::apply_edits(text, {effects::at_end_of(text, statics, create::kReflectorLine)});
+  return with_lines(text, arguments.machine, "static", create::kReflectorLine);
 }
 
 /// The machine text with artefacts "NAME:TYPE" at the end of <variables>.
 std::string with_artefacts(const std::string& text, const SetArguments& arguments) {
   if (arguments.artefacts.empty()) return text;
-  pugi::xml_document document;
-  document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
-  const pugi::xml_node variables = effects::element_named(document, "variables");
-  if (!variables)
-    throw text::InputError({arguments.machine, 0}, "variables",
-                           "the machine file has no <variables> element; add one");
   std::string lines;
   for (const std::string& words : arguments.artefacts) {
     const create::PlannedArtefact one = create::parse_planned_artefact(words);
     lines +=
         fmt::format("    <artefact name=\"{}\" type=\"{}\"/>\n", text::escape_attribute(one.name), one.type);
   }
-  return text::apply_edits(text, {effects::at_end_of(text, variables, lines)});
+  return with_lines(text, arguments.machine, "variables", lines);
 }
 
 void run_set(const SetArguments& arguments) {

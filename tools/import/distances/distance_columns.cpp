@@ -86,12 +86,6 @@ Cells cells_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::s
   return cells;
 }
 
-/// Numbers 1, 2, 3 … beside the rows.
-bool counts(const sheet::Heading& heading) {
-  const std::vector<std::string> words = heading_words(text::in_small_letters(heading.name));
-  return !words.empty() && std::all_of(words.begin(), words.end(), says_counting);
-}
-
 std::optional<SheetColumn> as_given(const sheet::SheetTable& table, const SheetWishes& wishes,
                                     std::size_t column) {
   for (const SheetWishes::Assignment& wish : wishes.assignments) {
@@ -165,7 +159,7 @@ std::vector<SheetColumn> distance_columns(const sheet::Sheet& sheet, const sheet
       leave_column(column, "not a length");
     } else {
       const std::string why = "by its heading";
-      switch (counts(heading) ? Says::kSpread : said_by(heading)) {
+      switch (heads_counting(heading.name) ? Says::kSpread : said_by(heading)) {
         case Says::kNominal:
           column = column_of(kNominalName, unit, why);
           break;
@@ -185,7 +179,8 @@ std::vector<SheetColumn> distance_columns(const sheet::Sheet& sheet, const sheet
           means.push_back(k);
           break;
         case Says::kSpread:
-          leave_column(column, counts(heading) ? "counts the rows" : "computed from the readings");
+          leave_column(column,
+                       heads_counting(heading.name) ? "counts the rows" : "computed from the readings");
           break;
         case Says::kNothing:
           column = column_of(columns::kDistance, unit, "numbers of another heading: a measured distance");

@@ -11,6 +11,7 @@
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/words/joint_names.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/title_units.h"
 #include "tools/sheet/sheet_number.h"
@@ -22,13 +23,6 @@ namespace vernier::importer {
 namespace {
 
 namespace columns = format::columns;
-
-/// Names of the axes whose positions a point needs: "X,Y,Z".
-std::string axes_of_points(const PointDistances& distances) {
-  std::string axes;
-  for (const MissingAxis& axis : distances.axes) axes += (axes.empty() ? "" : ",") + axis.name;
-  return axes;
-}
 
 constexpr int kDecimals = 9;     // of a mm: below every instrument
 constexpr double kShare = 0.05;  // largest permitted difference of a measured distance: 5 %, as for
@@ -485,13 +479,13 @@ text::InputError refusal_for_positions(const PointDistances& distances, const st
       fmt::format("the rows are distances between named points, and a fit needs the commanded position of "
                   "each point in the machine. State a list of the positions (--nominal FILE), or fill in "
                   "the positions ({} in mm) and {}",
-                  axes_of_points(distances), remedy)};
+                  axis_names(distances.axes), remedy)};
 }
 
 std::string options_of_points(const PointDistances& distances) {
   std::string options;
   for (const std::string& name : distances.missing)
-    options += fmt::format(" --point \"{}={}\"", name, axes_of_points(distances));
+    options += fmt::format(" --point \"{}={}\"", name, axis_names(distances.axes));
   return options;
 }
 

@@ -68,15 +68,9 @@ void place_points(NamedPoints& points, const std::map<std::string, double>& cons
       points.points[i].at_mm[k] = at(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i));
 }
 
-std::string names_of(const std::vector<MissingAxis>& axes) {
-  std::string names;
-  for (const MissingAxis& axis : axes) names += (names.empty() ? "" : ",") + axis.name;
-  return names;
-}
-
 NamedPoint stated_point(const std::string& words, const std::vector<MissingAxis>& axes) {
   const std::size_t sign = words.rfind('=');
-  const std::string form = fmt::format("NAME={} (mm or deg, in the order of the axes)", names_of(axes));
+  const std::string form = fmt::format("NAME={} (mm or deg, in the order of the axes)", axis_names(axes));
   if (sign == std::string::npos || text::trimmed(words.substr(0, sign)).empty())
     throw text::InputError({}, kOption, fmt::format("\"{}\" has not the form {}", words, form));
   NamedPoint point;

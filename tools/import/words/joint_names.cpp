@@ -54,10 +54,7 @@ bool has_unit(const MissingAxis& axis, const FreeColumn& column, bool stated) {
 }
 
 /// True for a number of the pose or the row: "Pose", "Nr.".
-bool counts_rows(const FreeColumn& column) {
-  const std::vector<std::string> words = heading_words(text::in_small_letters(column.heading));
-  return column.unit.empty() && !words.empty() && std::all_of(words.begin(), words.end(), says_counting);
-}
+bool counts_rows(const FreeColumn& column) { return column.unit.empty() && heads_counting(column.heading); }
 
 using JointPairs = std::vector<JointColumns::Pair>;
 
@@ -75,13 +72,20 @@ JointPairs by_names(const std::vector<MissingAxis>& axes, const std::vector<Free
   return pairs;
 }
 
-/// Families of columns that differ by their number alone, by the stem; in the order of their numbers.
+/// Families of names that differ by their number alone, by the stem: the indices of the names, in the order
+/// of their numbers.
+std::map<std::string, std::map<std::size_t, std::size_t>> families_of(const std::vector<std::string>& names) {
+  std::map<std::string, std::map<std::size_t, std::size_t>> families;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (const auto name = numbered(names[k])) families[name->stem].emplace(name->number, k);
+  return families;
+}
+
 std::map<std::string, std::map<std::size_t, std::size_t>> families_of(
     const std::vector<FreeColumn>& columns) {
-  std::map<std::string, std::map<std::size_t, std::size_t>> families;
-  for (std::size_t k = 0; k < columns.size(); ++k)
-    if (const auto name = numbered(columns[k].name)) families[name->stem].emplace(name->number, k);
-  return families;
+  std::vector<std::string> names;
+  for (const FreeColumn& column : columns) names.push_back(column.name);
+  return families_of(names);
 }
 
 /// The numbers of axes whose names have one stem; empty for other axes.
@@ -149,15 +153,18 @@ JointColumns joint_columns(const std::vector<MissingAxis>& axes, const std::vect
   return {by_order(axes, columns), false, "by their order"};
 }
 
+std::string axis_names(const std::vector<MissingAxis>& axes) {
+  std::string names;
+  for (const MissingAxis& axis : axes) names += (names.empty() ? "" : ",") + axis.name;
+  return names;
+}
+
 std::string joint_series(const std::vector<std::string>& names) {
   constexpr std::size_t kFewestJoints = 5;  // fewer numbered columns are runs or points as well
-  std::map<std::string, std::map<std::size_t, std::string>> families;
-  for (const std::string& name : names)
-    if (const auto found = numbered(name)) families[found->stem].emplace(found->number, name);
-  for (const auto& [stem, family] : families) {
+  for (const auto& [stem, family] : families_of(names)) {
     const std::size_t first = family.begin()->first, last = family.rbegin()->first;
     if (family.size() >= kFewestJoints && first < 2 && last - first + 1 == family.size())
-      return family.begin()->second + " to " + family.rbegin()->second;
+      return names[family.begin()->second] + " to " + names[family.rbegin()->second];
   }
   return "";
 }

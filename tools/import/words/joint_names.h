@@ -12,6 +12,9 @@ struct MissingAxis {
   bool rotary = true;
 };
 
+/// Returns the names of axes in their order: "X,Y,Z".
+std::string axis_names(const std::vector<MissingAxis>& axes);
+
 /// A column of numbers whose heading names no known quantity. `unit`: empty if the heading states none.
 struct FreeColumn {
   std::string heading, name, unit;

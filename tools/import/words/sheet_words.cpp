@@ -240,6 +240,10 @@ bool says_magnitude_of_deviation(std::string_view title) {
 bool says_straightness(const std::string& word) { return kStraightnessWords.contains(word); }
 bool says_tilt(const std::string& word) { return kTiltWords.contains(word); }
 bool says_counting(const std::string& word) { return kCountingWords.contains(word); }
+bool heads_counting(const std::string& heading) {
+  const std::vector<std::string> words = heading_words(text::in_small_letters(heading));
+  return !words.empty() && std::all_of(words.begin(), words.end(), says_counting);
+}
 bool says_deviation(const std::string& word) { return kDeviationWords.contains(word); }
 
 bool is_failed_formula(const std::string& cell) {

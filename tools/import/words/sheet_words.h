@@ -55,6 +55,8 @@ bool says_straightness(const std::string& word);
 bool says_tilt(const std::string& word);
 /// True for a column with a number or a name of each row: "Nr".
 bool says_counting(const std::string& word);
+/// True for a heading with such words alone: "lfd. Nr.".
+bool heads_counting(const std::string& heading);
 
 /// True for the text that a spreadsheet shows for a failed formula: "#BEZUG!", "#DIV/0!".
 bool is_failed_formula(const std::string& cell);
