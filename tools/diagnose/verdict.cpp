@@ -386,7 +386,7 @@ class Decision {
     const bool or_day = !or_set_up && daily_drift_explains(finder_.evidence(), pool_, accepted_.front(),
                                                            {accepted_.begin() + 1, accepted_.end()},
                                                            found_.options.thresholds.acceptance.distance);
-    const bool or_run = !or_set_up && !or_day && between_runs(0).sizes;
+    const bool or_run = !or_set_up && !or_day && change_between_runs(0);
     if (others == 0 && !or_set_up && !or_day && !or_run) return {};
     if (or_set_up || or_run) answer_.instrument = "set-up";
     if (or_day) answer_.instrument = "drift";
@@ -409,7 +409,7 @@ class Decision {
     return cause_in_words(answer_.candidates.front(),
                           other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
                           other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size()) +
-           or_a_reflector() + (between_runs(0).step ? step_between_runs_in_words() : "");
+           or_a_reflector() + or_a_step();
   }
 
   /// The same effect of two axes can have the same columns: a lag on a circle.
@@ -457,16 +457,23 @@ class Decision {
   // What the rules need.
 
   /// Is a change between the runs as good a cause as the accepted effect at this position?
-  ChangeBetweenRuns between_runs(std::size_t position) const {
-    return change_between_runs(finder_.evidence(), pool_, accepted_, position,
-                               found_.options.thresholds.acceptance.distance);
+  bool change_between_runs(std::size_t position) const {
+    return sizes_of_runs_explain(finder_.evidence(), pool_, accepted_, position,
+                                 found_.options.thresholds.acceptance.distance);
+  }
+
+  /// The doubt of the sentence about the first effect: one step of the machine as the input stepped.
+  std::string or_a_step() const {
+    const bool step = step_between_runs_explains(finder_.evidence(), pool_, accepted_, 0,
+                                                 found_.options.thresholds.acceptance.distance);
+    return step ? step_between_runs_in_words() : "";
   }
 
   /// A later step with several causes is not certain: a cause that only fits as well need not fit at other
   /// temperatures, speeds or times.
   void mark_open_steps() {
     for (std::size_t i = 1; i < accepted_.size(); ++i) {
-      if (between_runs(i).sizes) answer_.ladder[i + 1].certain = false;
+      if (change_between_runs(i)) answer_.ladder[i + 1].certain = false;
       if (found_.close(i).empty()) continue;
       answer_.ladder[i + 1].certain = false;
       answer_.ladder[i + 1].causes = causes_of_step(found_, i);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "tools/diagnose/doubts/shape.h"
 
@@ -39,16 +40,13 @@ Eigen::MatrixXd one_size_for_each_run(const Evidence& evidence, const effects::C
 double decrease_by_step(const Evidence& evidence, const Eigen::MatrixXd& of_runs, Eigen::Index width,
                         const Eigen::MatrixXd& beside) {
   double best = 0;
+  const auto of_run = [&](Eigen::Index run) { return of_runs.middleCols(run * width, width); };
   const Eigen::Index runs = of_runs.cols() / width;
-  const auto from = [&](Eigen::Index first) {
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(of_runs.rows(), width);
-    for (Eigen::Index run = first; run < runs; ++run) sum += of_runs.middleCols(run * width, width);
-    return sum;
-  };
-  const Eigen::MatrixXd always = from(0);
-  for (Eigen::Index first = 1; first < runs; ++first) {
-    Eigen::MatrixXd both(of_runs.rows(), 2 * width);
-    both << from(first), always;
+  // The columns from a run on, and those of all runs.
+  Eigen::MatrixXd both = Eigen::MatrixXd::Zero(of_runs.rows(), 2 * width);
+  for (Eigen::Index run = 0; run < runs; ++run) both.rightCols(width) += of_run(run);
+  for (Eigen::Index first = runs - 1; first > 0; --first) {
+    both.leftCols(width) += of_run(first);
     // The run of the step is one of a few: its choice costs less than a reading.
     best = std::max({best, bic_decrease(evidence, both.leftCols(width), beside, 0),
                      bic_decrease(evidence, both, beside, 0)});
@@ -56,21 +54,28 @@ double decrease_by_step(const Evidence& evidence, const Eigen::MatrixXd& of_runs
   return best;
 }
 
-}  // namespace
+/// An effect that an input or the time drives, as it is compared with a change between the runs.
+struct Compared {
+  Eigen::MatrixXd of_runs;  // whitened columns of the change, `width` columns a run
+  Eigen::Index width = 0;
+  Eigen::MatrixXd beside;  // columns of the other effects
+  double least = 0;        // decrease of the BIC from which a change explains the readings as well
+};
 
-ChangeBetweenRuns change_between_runs(const Evidence& evidence, const Pool& pool,
-                                      const std::vector<std::size_t>& items, std::size_t position,
-                                      double distance) {
+std::optional<Compared> compared(const Evidence& evidence, const Pool& pool,
+                                 const std::vector<std::size_t>& items, std::size_t position,
+                                 double distance) {
   const std::size_t item = items[position];
   const auto in_time = [&](std::size_t one) {
     return pool.candidate(one).choice.runs.empty() &&
            change_in_time(drivers_of(evidence.machine(), pool.candidate(one)));
   };
-  if (!in_time(item)) return {};
+  if (!in_time(item)) return std::nullopt;
   const effects::Candidate& candidate = pool.candidate(item);
-  Eigen::Index width = 0;
-  Eigen::MatrixXd of_runs = one_size_for_each_run(evidence, candidate, pool[item].scored.scanned, width);
-  if (of_runs.cols() == 0 || !of_runs.allFinite() || !(of_runs.norm() > 0)) return {};
+  Compared change;
+  Eigen::MatrixXd& of_runs = change.of_runs;
+  of_runs = one_size_for_each_run(evidence, candidate, pool[item].scored.scanned, change.width);
+  if (of_runs.cols() == 0 || !of_runs.allFinite() || !(of_runs.norm() > 0)) return std::nullopt;
   evidence.whiten(of_runs);
   std::vector<std::size_t> others;
   Eigen::MatrixXd named(of_runs.rows(), 0);
@@ -88,11 +93,26 @@ ChangeBetweenRuns change_between_runs(const Evidence& evidence, const Pool& pool
     named.rightCols(columns.cols()) = columns;
     scanned += pool[one].scored.scanned.size();
   }
-  const Eigen::MatrixXd beside = pool.columns(others);
-  const double least = bic_decrease(evidence, named, beside, scanned) - distance;
+  change.beside = pool.columns(others);
+  change.least = bic_decrease(evidence, named, change.beside, scanned) - distance;
+  return change;
+}
+
+}  // namespace
+
+bool sizes_of_runs_explain(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
+                           std::size_t position, double distance) {
+  const auto change = compared(evidence, pool, items, position, distance);
+  return change && bic_decrease(evidence, change->of_runs, change->beside, 0) > change->least;
+}
+
+bool step_between_runs_explains(const Evidence& evidence, const Pool& pool,
+                                const std::vector<std::size_t>& items, std::size_t position,
+                                double distance) {
   // A recorded heat or load can step as the machine did. The number of visits steps with each run anyway.
-  return {bic_decrease(evidence, of_runs, beside, 0) > least,
-          !candidate.choice.inputs.empty() && decrease_by_step(evidence, of_runs, width, beside) > least};
+  if (pool.candidate(items[position]).choice.inputs.empty()) return false;
+  const auto change = compared(evidence, pool, items, position, distance);
+  return change && decrease_by_step(evidence, change->of_runs, change->width, change->beside) > change->least;
 }
 
 }  // namespace vernier::diagnose

@@ -7,21 +7,19 @@
 
 namespace vernier::diagnose {
 
-/// Changes of the machine between the runs that explain the readings as well as an accepted effect does.
-struct ChangeBetweenRuns {
-  bool sizes = false;  // the same error with another size in each run
-  bool step = false;   // the same error with one step from a run on; only for an effect of an input
-};
+/// True if the same error with another size in each run, for example a squareness after a collision, explains
+/// the readings as well as one of the accepted effects `items` does. A change between the runs can be
+/// confused only with an effect that an input or the time drives, and only if this changes much more between
+/// the runs than within a run: a slow response to heat that begins again in each run. The test compares the
+/// BIC of the effect, together with all such effects that move the readings in the same way, and of the
+/// change, each in a model with the other accepted effects. The BIC of the change may be larger by less than
+/// `distance`.
+bool sizes_of_runs_explain(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
+                           std::size_t position, double distance);
 
-/// Compares one of the accepted effects `items` with a change between the runs: the same error with another
-/// size in each run, or with one step, for example a squareness after a collision. A change can be confused
-/// only with an effect that an input or the time drives, and only if this changes much more between the runs
-/// than within a run: a slow response to heat that begins again in each run, or a temperature that steps with
-/// the machine. The test compares the BIC of the effect, together with all such effects that move the
-/// readings in the same way, and of the change, each in a model with the other accepted effects. The BIC of
-/// the change may be larger by less than `distance`.
-ChangeBetweenRuns change_between_runs(const Evidence& evidence, const Pool& pool,
-                                      const std::vector<std::size_t>& items, std::size_t position,
-                                      double distance);
+/// As sizes_of_runs_explain(), for the same error with one step from a run on, and for an effect of an input
+/// only: a temperature that steps with the machine.
+bool step_between_runs_explains(const Evidence& evidence, const Pool& pool,
+                                const std::vector<std::size_t>& items, std::size_t position, double distance);
 
 }  // namespace vernier::diagnose
