@@ -218,7 +218,8 @@ class Decision {
     const std::vector<LadderStep>& ladder = answer_.ladder;
     const std::size_t cause = accepted_.front();
     const double before = ladder[0].chi_square_per_freedom - 1, after = ladder[1].chi_square_per_freedom - 1;
-    if (!fit::has_uncertainty(found_.measurement) || !found_.confirmed.contains(cause) ||
+    const double chance = limits_.noise_sigmas * std::sqrt(2 / std::max(1.0, answer_.end.freedom));
+    if (!fit::has_uncertainty(found_.measurement) || before < chance || !found_.confirmed.contains(cause) ||
         pool_.is_custom(cause) || !found_.close(0).empty() ||
         before - after < limits_.most_of_excess * before)
       return false;
