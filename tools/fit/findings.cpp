@@ -67,7 +67,9 @@ std::array<Squares, 4> squares_of(const FitResult& result, const model::Measurem
         result.prediction_variance.size() > 0 ? result.prediction_variance[static_cast<Index>(i)] : 0;
     // In fit rows, the fit absorbs the share of the noise that its own prediction has. In check
     // rows, the uncertainty of the fit is added to the noise.
-    const double taken = std::min(1.0, predicted / (u * u * std::max(1.0, result.variance_factor)));
+    const double weighed = u * result.factor_of(m.file[m.observations[i].row]);
+    const double taken =
+        std::min(1.0, predicted / (weighed * weighed * std::max(1.0, result.variance_factor)));
     const double unit = check ? u * u + predicted : u * u, left = check ? 1 : 1 - taken;
     const double most = kMostSpreads * std::max(u, spread[along]);
     const double square = std::pow(std::min(std::abs(result.residual[static_cast<Index>(i)]), most), 2);

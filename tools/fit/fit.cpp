@@ -17,6 +17,7 @@
 #include "tools/fit/coverage/unseen_turns.h"
 #include "tools/fit/decisions.h"
 #include "tools/fit/estimates_of_things.h"
+#include "tools/fit/files/file_factors.h"
 #include "tools/fit/findings.h"
 #include "tools/fit/least_squares/problem.h"
 #include "tools/fit/least_squares/statistics.h"
@@ -215,7 +216,7 @@ bool find_disturbance(const FitResult& result, const model::Measurement& rows, c
     record.disturbed = mm / result.misfit_mm;
     record.disturbance = std::move(words);
   };
-  const NoiseUnit unit = noise_unit(rows);
+  const NoiseUnit unit = noise_unit(all);
   for (const NoiseStep& step : result.noise.steps) {
     const auto kind = static_cast<model::ObservationKind>(step.kind);
     if (model::is_rotation(kind)) continue;
@@ -317,9 +318,10 @@ std::vector<model::FitRecord::Plane> touched_planes(const std::vector<ThingEstim
   return planes;
 }
 
-/// Fills the record that the machine file keeps of the fit. all: including check rows.
+/// Fills the record that the machine file keeps of the fit. all: including check rows; weighed: the same,
+/// with u of the fit.
 void remember(FitResult& result, const model::Measurement& rows, const model::Measurement& all,
-              const Convention& convention, bool robust) {
+              const model::Measurement& weighed, const Convention& convention, bool robust) {
   auto record = std::make_shared<model::FitRecord>();
   record->converged = result.converged;
   record->rms_mm = left_mm(result);
@@ -346,7 +348,7 @@ void remember(FitResult& result, const model::Measurement& rows, const model::Me
   const Eigen::Vector3d lack_mm = model_discrepancy(result, all);
   record->discrepancy_mm = {lack_mm.x(), lack_mm.y(), lack_mm.z()};
   result.machine.fitted = record;
-  const ReadingsBesideSetUp readings(result.machine, all, result.residual, result.variance_factor);
+  const ReadingsBesideSetUp readings(result.machine, weighed, result.residual, result.variance_factor);
   record->unvaried = unvaried_dependences(readings);
   record->alternatives = find_alternatives(readings);
   record->findings = findings_of(result, *record, all);
@@ -455,10 +457,85 @@ void keep_start_as_nominal(model::Machine& machine) {
 
 }  // namespace
 
+double FitResult::factor_of(std::size_t file) const {
+  for (const FileFactor& one : file_factors)
+    if (one.file == file) return one.factor;
+  return 1;
+}
+
 bool ParameterEstimate::moved() const {
   constexpr double kOfScale = 0.005;  // half a per cent of the scale: not visible beside it with two digits
   return std::abs(value - nominal) > kOfScale * scale;
 }
+
+namespace {
+
+/// The end of a fit, and the number of its readings without those that touched objects take.
+struct Solution {
+  Settled end;
+  std::size_t readings = 0;
+};
+
+/// Solves with the weights of `rows`. Changes the iterations, the convergence, the stages and the size in
+/// `result`.
+Solution solved(FitResult& result, const model::Machine& machine, const model::Measurement& rows,
+                Convention& convention, const StatedPriors& stated, const FitOptions& options) {
+  FitProblem problem(machine, rows, result.parameters);
+  problem.hold_unseen(convention.unseen);
+  result.size = decide_size(problem, machine, result.parameters, convention, stated, convention.centre);
+  const bool with_u = has_uncertainty(rows), squared = options.loss == Loss::kSquared;
+  if (!squared && !problem.things().empty())
+    throw text::InputError(
+        "--loss: a robust loss does not work with the columns same and on; remove bad touches by "
+        "--residuals, or use the squared loss");
+  Solution solution;
+  solution.readings = result.before.count - problem.things().eliminated();
+  if (result.parameters.size() == 0) {
+    solution.end = nothing_free(problem, solution.readings, with_u);
+    result.converged = true;
+    return solution;
+  }
+  const auto once = [&] {
+    result.stages.clear();
+    const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
+    solution.end =
+        squared ? settle(problem, near, convention, stated, solution.readings, with_u, options.noise,
+                         !result.file_factors.empty())
+                : describe(problem, near, convention, stated, solution.readings, with_u, options.noise);
+    result.iterations += squared ? solution.end.iterations : 0;
+    result.converged = result.converged && (!squared || solution.end.converged);
+  };
+  once();
+  if (hold_turned_away(solution.end, convention)) once();
+  if (see_again(machine, solution.end.point, rows, result.parameters, convention)) {
+    problem.hold_unseen(convention.unseen);
+    once();
+  }
+  return solution;
+}
+
+/// True if the residual is far enough above u that the files may differ in how far the model describes them.
+/// A given noise model is the caller's, with the weights of its rows.
+bool may_differ_by_file(const Settled& end, const model::Measurement& m, const FitOptions& options) {
+  constexpr double kAboveU = 1.5;  // standard deviation of the residual, in u: beyond the error of a stated u
+  return !options.noise && options.loss == Loss::kSquared && m.files.size() > 1 && has_uncertainty(m) &&
+         end.variance > kAboveU * kAboveU;
+}
+
+/// Writes the noise of a fit with other weights in units of the stated u.
+void in_stated_units(Settled& end, const model::Measurement& stated, const model::Measurement& weighed) {
+  const NoiseUnit before = noise_unit(weighed), after = noise_unit(stated);
+  const double times = before.angles_only ? before.arcsec / after.arcsec : before.um / after.um;
+  for (double* const size : {&end.noise.own, &end.noise.pose, &end.noise.run, &end.noise.drift})
+    *size *= times;
+  for (NoiseStep& step : end.noise.steps) {
+    step.height *= times;
+    step.std *= times;
+    step.unit /= times;
+  }
+}
+
+}  // namespace
 
 FitResult fit(const model::Machine& machine, const model::Measurement& measurement,
               const FitOptions& options) {
@@ -473,55 +550,40 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
         "the measurement has no reading with role fit; give at least some rows the role fit");
   result.noise_um = noise_um(measurement);
   const std::vector<std::size_t> kept = kept_for_fit(machine, measurement);
-  const model::Measurement rows =
+  model::Measurement rows =
       kept.size() == measurement.rows() ? measurement : model::select_rows(measurement, kept);
   Convention convention = convention_of(machine, rows, result.parameters);
   result.misfit_mm = convention.misfit_mm;
   result.reach_mm = convention.reach_mm;
   result.only_set_up = with_only_set_up(result, machine, convention.centre, measurement);
-  FitProblem problem(machine, rows, result.parameters);
-  problem.hold_unseen(convention.unseen);
   const StatedPriors stated = stated_priors(result, options, convention);
-  result.size = decide_size(problem, machine, result.parameters, convention, stated, convention.centre);
-  const bool with_u = has_uncertainty(measurement);
-  Settled end;
-  const std::size_t readings = result.before.count - problem.things().eliminated();
-  if (options.loss != Loss::kSquared && !problem.things().empty())
-    throw text::InputError(
-        "--loss: a robust loss does not work with the columns same and on; remove bad touches by "
-        "--residuals, or use the squared loss");
-  if (result.parameters.size() == 0) {
-    end = nothing_free(problem, readings, with_u);
-    result.converged = true;
-  } else {
-    const auto solved = [&] {
-      const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
-      const bool squared = options.loss == Loss::kSquared;
-      end = squared ? settle(problem, near, convention, stated, readings, with_u, options.noise)
-                    : describe(problem, near, convention, stated, readings, with_u, options.noise);
-      result.iterations += squared ? end.iterations : 0;
-      result.converged = result.converged && (!squared || end.converged);
-    };
-    solved();
-    if (hold_turned_away(end, convention)) solved();
-    if (see_again(machine, end.point, rows, result.parameters, convention)) {
-      problem.hold_unseen(convention.unseen);
-      solved();
-    }
-    // Steps were found among the rows of the fit, and are stated by the rows of the files.
-    for (NoiseStep& step : end.noise.steps)
-      if (!options.noise && step.row < kept.size()) step.row = kept[step.row];
+  Solution solution = solved(result, machine, rows, convention, stated, options);
+  model::Measurement weighed = measurement;
+  if (may_differ_by_file(solution.end, measurement, options))
+    result.file_factors = file_factors(machine, measurement);
+  if (!result.file_factors.empty()) {
+    weighed = with_factors(measurement, result.file_factors);
+    rows = model::select_rows(weighed, kept);
+    solution = solved(result, machine, rows, convention, stated, options);
+    in_stated_units(solution.end, measurement, weighed);
   }
+  Settled& end = solution.end;
+  const std::size_t readings = solution.readings;
+  // Steps were found among the rows of the fit, and are stated by the rows of the files.
+  for (NoiseStep& step : end.noise.steps)
+    if (!options.noise && step.row < kept.size()) step.row = kept[step.row];
   result.parameters.set(result.machine, end.point);
   result.residual = residuals(result.machine, measurement);
   result.after = role_statistics(measurement, result.residual, false);
   result.check = role_statistics(measurement, result.residual, true);
   estimate(result, end, convention.centre);
-  result.things = estimates_of_things(result, measurement);
+  if (!result.file_factors.empty())
+    result.chi_square = fit_weights(measurement).cwiseProduct(result.residual).squaredNorm();
+  result.things = estimates_of_things(result, weighed);
   judge(result, machine, measurement, end, readings);
   result.check_ratio = check_ratio(result, convention.centre, measurement);
   result.prediction_variance = prediction_variance(result, measurement);
-  remember(result, rows, measurement, convention, options.loss != Loss::kSquared);
+  remember(result, rows, measurement, weighed, convention, options.loss != Loss::kSquared);
   result.correlations = strong_correlations(result.observability);
   result.normalised_check = normalised_error(result, measurement);
   return result;

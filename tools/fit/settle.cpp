@@ -67,8 +67,9 @@ VectorXd solution_of(const MatrixXd& matrix, const VectorXd& right) {
 class Settler {
  public:
   Settler(FitProblem& problem, const Convention& convention, const StatedPriors& stated,
-          std::size_t observations, bool with_u, const std::optional<NoiseModel>& noise)
+          std::size_t observations, bool with_u, const std::optional<NoiseModel>& noise, bool files_differ)
       : problem_(problem),
+        files_differ_(files_differ),
         noise_(noise),
         convention_(convention),
         stated_(stated),
@@ -297,10 +298,18 @@ class Settler {
   /// Returns gain * J^T W cov(readings) W J * gain^T. For independent errors the middle is `variance` times
   /// `data`, and gain * data = I - left, because the inverse of data + weak times data is I - once.
   MatrixXd covariance_from_readings(const MatrixXd& data, const MatrixXd& gain, const MatrixXd& left) {
-    if (const std::optional<MatrixXd> correlated = readings_covariance(data))
-      return gain * *correlated * gain.transpose();
+    const std::optional<MatrixXd> correlated = readings_covariance(data);
+    if (correlated && !files_differ_) return gain * *correlated * gain.transpose();
     const MatrixXd half = gain - gain * left.transpose();
-    return 0.5 * result_.variance * (half + half.transpose());
+    const MatrixXd independent = 0.5 * result_.variance * (half + half.transpose());
+    if (!correlated) return independent;
+    // The correlation is that of the file that the model describes badly. It must not make an estimate from
+    // another file more certain.
+    const MatrixXd common = gain * *correlated * gain.transpose();
+    VectorXd larger = VectorXd::Ones(common.rows());
+    for (Index i = 0; i < larger.size(); ++i)
+      if (common(i, i) > 0) larger[i] = std::sqrt(std::max(1.0, independent(i, i) / common(i, i)));
+    return larger.asDiagonal() * common * larger.asDiagonal();
   }
 
   /// Returns J^T W cov(readings) W J if the errors are correlated: their influence on a fit that assumed
@@ -347,6 +356,7 @@ class Settler {
   }
 
   FitProblem& problem_;
+  const bool files_differ_;
   const std::optional<NoiseModel>& noise_;
   const Convention& convention_;
   const StatedPriors& stated_;
@@ -363,14 +373,14 @@ class Settler {
 
 Settled settle(FitProblem& problem, const VectorXd& point, const Convention& convention,
                const StatedPriors& stated, std::size_t observations, bool with_u,
-               const std::optional<NoiseModel>& noise) {
-  return Settler(problem, convention, stated, observations, with_u, noise).run(point);
+               const std::optional<NoiseModel>& noise, bool files_differ) {
+  return Settler(problem, convention, stated, observations, with_u, noise, files_differ).run(point);
 }
 
 Settled describe(FitProblem& problem, const VectorXd& point, const Convention& convention,
                  const StatedPriors& stated, std::size_t observations, bool with_u,
                  const std::optional<NoiseModel>& noise) {
-  return Settler(problem, convention, stated, observations, with_u, noise).describe(point);
+  return Settler(problem, convention, stated, observations, with_u, noise, false).describe(point);
 }
 
 }  // namespace vernier::fit

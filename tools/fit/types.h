@@ -156,6 +156,14 @@ struct ThingEstimate {
   double u_radius_mm = 0;
 };
 
+/// How far the readings of a file are from the model, beyond their stated u (tools/fit/files/file_factors.h).
+struct FileFactor {
+  std::size_t file = 0;  // index in Measurement::files
+  std::string name;      // of the file
+  double factor = 1;     // factor of u in the fit, at least 1
+  std::string sentence() const;
+};
+
 /// The lengths that determine the size of the machine.
 struct SizeOfMachine {
   bool known = false;       // false: the size is fixed at nominal
@@ -181,15 +189,21 @@ struct FitResult {
   /// set-up of the machine file, which may be metres from the instrument.
   std::optional<RoleStatistics> only_set_up;
   std::optional<double> noise_um;
-  NoiseModel noise;                       // noise model (correlation of the errors of the readings) that the
-                                          // covariance uses
-  double misfit_mm = 0, reach_mm = 0;     // misfit and reach, from which the scales are computed
-                                          // (tools/fit/convention.h)
-  Eigen::MatrixXd covariance;             // covariance of all parameters, including the convention
-  Eigen::MatrixXd open;                   // part of the covariance from parameters that no reading determines
-  double chi_square = 0;                  // weighted sum of squares at the end of the fit
-  double freedom = 0;                     // observations minus the number of fitted parameters
-  double variance_factor = 1;             // factor that multiplies the covariance
+  NoiseModel noise;                    // noise model (correlation of the errors of the readings) that the
+                                       // covariance uses
+  double misfit_mm = 0, reach_mm = 0;  // misfit and reach, from which the scales are computed
+                                       // (tools/fit/convention.h)
+  Eigen::MatrixXd covariance;          // covariance of all parameters, including the convention
+  Eigen::MatrixXd open;                // part of the covariance from parameters that no reading determines
+  double chi_square = 0;               // weighted sum of squares at the end of the fit
+  double freedom = 0;                  // observations minus the number of fitted parameters
+  double variance_factor = 1;          // factor that multiplies the covariance
+  /// Factors of u in the fit if the files differ in how far the model describes them; empty: 1 for all.
+  /// `chi_square` is the sum of squares over the stated u; `variance_factor` that over u times the factors,
+  /// divided by `freedom`.
+  std::vector<FileFactor> file_factors;
+  /// Returns the factor of u of a file.
+  double factor_of(std::size_t file) const;
   std::vector<Correlation> correlations;  // correlations above 0.9 in magnitude, largest first
   std::optional<NormalisedError>
       normalised_check;  // no value without check rows, or if no degree of freedom remains

@@ -156,6 +156,11 @@ ordered_json fit_json(const fit::FitResult& result, const model::Measurement& m)
                                 (fit::has_uncertainty(m) ? ", u given" : ", from the residual");
   json["noise_model"]["scale_of_u"] =
       fit::has_uncertainty(m) ? ordered_json(std::sqrt(result.variance_factor)) : ordered_json(nullptr);
+  if (!result.file_factors.empty()) {
+    json["noise_model"]["files"] = ordered_json::array();
+    for (const fit::FileFactor& one : result.file_factors)
+      json["noise_model"]["files"].push_back({{"file", one.name}, {"scale_of_u", one.factor}});
+  }
   json["misfit_um"] = 1000 * result.misfit_mm;
   json["reach_mm"] = result.reach_mm;
   json["weakest"] = ordered_json::array();

@@ -244,5 +244,62 @@ TEST(FileNoise, AnEffectThatExplainsTheResidualLowersTheEstimate) {
   EXPECT_EQ(rows.uncertainty[static_cast<Eigen::Index>(rows.rows()) - 1], noise[0].u);
 }
 
+/// Heights with a bow that the model does not have.
+std::string bowed(std::mt19937_64& random, double bow_mm) {
+  std::normal_distribution<double> noise(0, 0.5e-3);
+  std::string csv = "X[mm],Y[mm],Z[mm],z[mm],u[um],setup\n";
+  for (int i = 0; i <= 8; ++i)
+    for (int k = 0; k <= 5; ++k) {
+      const double x = 100.0 * i, y = 100.0 * k;
+      csv += fmt::format("{},{},-200,{:.6f},0.5,height\n", x, y,
+                         -200 + bow_mm * std::pow(x / 400 - 1, 2) + noise(random));
+    }
+  return csv;
+}
+
+Measurement all_of(const std::vector<std::pair<std::string, std::string>>& files) {
+  Measurement all = parse_measurement(files.front().second, files.front().first, machine());
+  for (std::size_t i = 1; i < files.size(); ++i)
+    append_measurement(all, parse_measurement(files[i].second, files[i].first, machine()));
+  return all;
+}
+
+ParameterEstimate squareness_of(const FitResult& fitted) {
+  for (const ParameterEstimate& one : fitted.estimates)
+    if (one.name == "EC0Y") return one;
+  return {};
+}
+
+TEST(FileFactors, AnErrorInOneFileTakesNoWeightFromTheOthers) {
+  for (const double bow_mm : {0.1, 1.0, 10.0}) {
+    std::mt19937_64 random(20261138);
+    const std::string square = tracker(random, 12, 1, ",u[um],setup", ",6,tracker");
+    const ParameterEstimate alone = squareness_of(fit::fit(machine(), all_of({{"square.csv", square}})));
+    const Measurement rows = all_of({{"square.csv", square}, {"bed.csv", bowed(random, bow_mm)}});
+    const FitResult together = fit::fit(machine(), rows);
+    ASSERT_EQ(together.file_factors.size(), 2u);
+    EXPECT_EQ(together.file_factors[0].factor, 1) << "chance explains its residual";
+    // A parabola beside the best plane: 0.35 of its height, with stations every 100 mm.
+    EXPECT_NEAR(together.file_factors[1].factor, 0.33 * bow_mm / 0.5e-3, 0.05 * bow_mm / 0.5e-3);
+    const ParameterEstimate beside = squareness_of(together);
+    EXPECT_NEAR(beside.value, alone.value, 0.05 * alone.std) << bow_mm;
+    EXPECT_NEAR(beside.std, alone.std, 0.3 * alone.std) << bow_mm;
+    EXPECT_GT(together.chi_square, 1e4) << "over the stated u";
+    EXPECT_NE(together.file_factors[1].sentence().find("bed.csv: the model leaves"), std::string::npos);
+  }
+}
+
+TEST(FileFactors, FilesThatTheModelDescribesAlikeKeepTheStatedU) {
+  std::mt19937_64 random(20261139);
+  const std::string square = tracker(random, 30, 1, ",u[um],setup", ",6,tracker");
+  const Measurement right = all_of({{"square.csv", square}, {"bed.csv", bowed(random, 0)}});
+  EXPECT_TRUE(fit::fit(machine(), right).file_factors.empty());
+  const Measurement bent = all_of({{"square.csv", square}, {"bed.csv", bowed(random, 1)}});
+  FitOptions given;
+  given.noise = NoiseModel{};
+  EXPECT_TRUE(fit::fit(machine(), bent, given).file_factors.empty()) << "the caller has weighed the rows";
+  EXPECT_TRUE(fit::fit(machine(), all_of({{"bed.csv", bowed(random, 1)}})).file_factors.empty());
+}
+
 }  // namespace
 }  // namespace vernier::file_noise_test

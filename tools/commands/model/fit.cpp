@@ -149,6 +149,8 @@ void print_result(std::FILE* out, const fit::FitResult& result, const model::Mea
     fmt::print(out, "rms rotations   {} before {}\n", results::number_or_dash(after.rms_urad, "urad"),
                results::number_or_dash(result.only_set_up.value_or(before).rms_urad, "urad"));
   fmt::print(out, "noise           {}\n", error_or_dash(result.noise_um, fit::noise_urad(m)));
+  for (const fit::FileFactor& one : result.file_factors)
+    if (one.factor > 1) fmt::print(out, "{}\n", one.sentence());
   if (!result.noise.independent())
     fmt::print(out,
                "correlated part of the residual, taken as correlated errors of the readings in every "
