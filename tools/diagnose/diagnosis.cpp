@@ -181,7 +181,7 @@ class Diagnoser {
   /// 20 to 1.
   std::optional<StepEvidence> confirmed_by(const Proof& proof, std::size_t item) const {
     const ProofThresholds& limits = options_.thresholds.proof;
-    if (proof.evidence < proof.asked(limits)) return std::nullopt;
+    if (proof.evidence < proof.asked(limits)) return confirmed_beside(proof, item);
     // A step of one run does not apply to another run. It is sufficient that rows of other runs
     // become worse with it.
     if (!pool_.candidate(item).choice.runs.empty() && proof.evidence < 0) return std::nullopt;
@@ -189,6 +189,19 @@ class Diagnoser {
     const double held_out = finder_.held_out_evidence(item);
     if (held_out < limits.evidence) return std::nullopt;
     return StepEvidence{held_out, false};
+  }
+
+  /// Check rows that the effect hardly changes (those of a tracker beside a laser that shows a backlash of
+  /// two of its u) can be against a true effect by chance. The runs held out in turn then decide together
+  /// with them, at the odds at which one file contradicts a step.
+  std::optional<StepEvidence> confirmed_beside(const Proof& proof, std::size_t item) const {
+    const ProofThresholds& limits = options_.thresholds.proof;
+    if (proof.expected >= limits.evidence || !pool_.candidate(item).choice.runs.empty() ||
+        proof.evidence < proof.expected - limits.loss_sigmas * std::sqrt(2 * proof.expected))
+      return std::nullopt;
+    const double together = proof.evidence + finder_.held_out_evidence(item);
+    if (together < limits.contradiction) return std::nullopt;
+    return StepEvidence{together, false};
   }
 
   /// Variance of the independent noise of a weighted reading beside a fit, for proof_on_check_rows().
@@ -220,6 +233,13 @@ class Diagnoser {
         "1/u^2, "
         "increases by {:.3g}",
         measurement_.files[one.file], -2 * one.evidence);
+  }
+
+  static std::string refused_by(const Proof& proof) {
+    return fmt::format(
+        "test `held out`: the sum of squares of the check rows, weighted by 1/u^2, increases by {:.3g}; this "
+        "effect would decrease it by {:.3g}",
+        -2 * proof.evidence, 2 * proof.expected);
   }
 
   /// What the term of an effect contributes to the prediction of each reading, mm or deg.
@@ -285,13 +305,19 @@ class Diagnoser {
       const std::optional<StepEvidence> confirmation =
           contradicted ? std::nullopt : confirmed_by(proof, item);
       if (!confirmation) {
-        if (contradicted) steps.contradicted.push_back({item, contradicted_by(*contradicted)});
+        if (contradicted)
+          steps.contradicted.push_back({item, contradicted_by(*contradicted)});
+        else if (proof.evidence < std::min(0.0, proof.asked(options_.thresholds.proof)))
+          steps.contradicted.push_back({item, refused_by(proof)});
         steps.not_confirmed.push_back(pool_.candidate(item).spoken);
         exclude();
         continue;
       }
-      if (confirmation->of_check_rows) steps.confirmed.insert(item);
-      steps.ladder.push_back(step_of(item, fitted, confirmation->value));
+      // Check rows that favour the step, beside runs held out in turn that leave no doubt.
+      if (confirmation->of_check_rows ||
+          (proof.evidence > 0 && confirmation->value > options_.thresholds.proof.contradiction))
+        steps.confirmed.insert(item);
+      steps.ladder.push_back(step_of(item, fitted, *confirmation));
       steps.machine_text = fitted.text;
       steps.end = fitted.fit;
       steps.effects = fitted.effects;
@@ -300,10 +326,12 @@ class Diagnoser {
     return steps;
   }
 
-  LadderStep step_of(std::size_t item, const effects::FittedEffects& fitted, double evidence) const {
+  LadderStep step_of(std::size_t item, const effects::FittedEffects& fitted,
+                     const StepEvidence& confirmation) const {
     LadderStep step;
     step.confirmed = true;
-    step.evidence = evidence;
+    step.of_check_rows = confirmation.of_check_rows;
+    step.evidence = confirmation.value;
     step.effect = pool_.candidate(item).choice.effect->id;
     step.add = add_string_of(item);
     step.label = pool_.candidate(item).label;

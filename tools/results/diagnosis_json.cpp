@@ -224,6 +224,9 @@ Json diagnosis_json(const diagnose::Diagnosis& diagnosis, const model::Measureme
                               {"check_rms_urad", text::or_null(step.check_rms_urad)},
                               {"check_files", check_files_json(step)},
                               {"confirmed", step.confirmed ? Json(*step.confirmed) : Json(nullptr)},
+                              {"confirmed_by", !step.confirmed      ? Json(nullptr)
+                                               : step.of_check_rows ? Json("check rows")
+                                                                    : Json("held-out runs")},
                               {"evidence", text::or_null(step.evidence)},
                               {"certain", given ? Json(nullptr) : Json(step.certain)},
                               {"causes", causes_json(step.causes)},

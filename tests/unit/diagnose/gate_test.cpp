@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -31,6 +32,7 @@ struct Rows {
   double reversal = 0, check_reversal = 0, check_noise = 1;
   int check_every = 4;
   double noise = 1;
+  int check_u = 1;  // um
 };
 
 std::string survey(const Rows& rows) {
@@ -43,7 +45,8 @@ std::string survey(const Rows& rows) {
     const double x = place(random), dir = (row / 3) % 2 == 0 ? 1 : -1;
     const double off = dir * (check ? rows.check_reversal : rows.reversal) +
                        (check ? rows.check_noise : rows.noise) * noise(random);
-    text += fmt::format("{:.3f},{},{:.6f},1,r{},{}\n", x, dir, x + off, row / 120, check ? "check" : "fit");
+    text += fmt::format("{:.3f},{},{:.6f},{},r{},{}\n", x, dir, x + off, check ? rows.check_u : 1, row / 120,
+                        check ? "check" : "fit");
   }
   return text;
 }
@@ -51,6 +54,31 @@ std::string survey(const Rows& rows) {
 Diagnosis diagnosed(const Rows& rows) {
   const Machine machine = parse_machine(kAxis, "m.xml");
   return diagnose::diagnose(kAxis, machine, parse_measurement(survey(rows), "m.csv", machine));
+}
+
+// Check rows of a tracker that hardly sees what a laser shows: half a u of the tracker.
+TEST(Gate, CheckRowsThatHardlySeeAStepDecideTogetherWithHeldOutRuns) {
+  const Diagnosis few =
+      diagnosed({.reversal = 0.003, .check_reversal = 0, .check_noise = 0, .check_every = 24, .check_u = 6});
+  ASSERT_GE(few.ladder.size(), 2u);
+  EXPECT_EQ(few.ladder[1].effect, "backlash") << "evidence of 20 check rows -2.5, the runs more than 1000";
+  EXPECT_FALSE(few.ladder[1].of_check_rows);
+  EXPECT_GT(few.ladder[1].evidence.value_or(0), 1000);
+  // Enough of them to refute it: an evidence of 10 in the mean.
+  const Diagnosis many =
+      diagnosed({.reversal = 0.003, .check_reversal = 0, .check_noise = 0, .check_every = 6, .check_u = 6});
+  EXPECT_EQ(many.ladder.size(), 1u);
+  EXPECT_NE(many.verdict, Verdict::kMissingEffect);
+}
+
+TEST(Gate, AStepThatTheCheckRowsRefuseMakesRoomForAnother) {
+  // The reason is stated beside the refused candidate.
+  const Diagnosis many =
+      diagnosed({.reversal = 0.003, .check_reversal = 0, .check_noise = 0, .check_every = 6, .check_u = 6});
+  const auto refused = std::ranges::find_if(many.candidates, [](const CandidateFinding& one) {
+    return one.why_not.find("the sum of squares of the check rows") != std::string::npos;
+  });
+  EXPECT_NE(refused, many.candidates.end());
 }
 
 TEST(Gate, AsksWhatATrueStepBringsAndNeverLessThanNothing) {

@@ -45,9 +45,10 @@ void print_ladder(std::FILE* out, const diagnose::Diagnosis& d, const model::Mea
         out, "  {:<56} {:>12} {:>12}{}\n", step.effect.empty() ? "the model as given" : "+ " + step.said,
         results::error_or_dash(step.rms_um, step.rms_urad),
         results::error_or_dash(step.check_rms_um, step.check_rms_urad),
-        !rises                           ? ""
-        : step.confirmed.value_or(false) ? "  more in um; weighted by 1/u^2 the check rows confirm the step"
-                                         : "  the check rows (held-out rows) do not confirm this step");
+        !rises                            ? ""
+        : !step.confirmed.value_or(false) ? "  the check rows (held-out rows) do not confirm this step"
+        : step.of_check_rows              ? "  more in um; weighted by 1/u^2 the check rows confirm the step"
+                             : "  too small for the check rows; runs held out in turn confirm the step");
     before = &step;
   }
   fmt::print(out, "  {:<56} {:>12}\n", "noise", results::error_or_dash(d.base.noise_um, fit::noise_urad(m)));
