@@ -631,6 +631,24 @@ class Describer {
   double scale_ = 1;
 };
 
+/// True if a row and the next one are much nearer to each other, in the positions of the axes, than two rows
+/// of the survey are on average: as in a bed that is probed row by row. The order of the rows is then also an
+/// order in space.
+bool follow_each_other_in_space(const KindSample& sample, const model::Measurement& m) {
+  constexpr double kMuchNearer = 0.25;  // squares of distances: half of the distance
+  double next = 0, any = 0;
+  for (const model::Column& axis : m.states.axis) {
+    const Eigen::VectorXd at =
+        axis(std::vector<Eigen::Index>(sample.rows.begin(), sample.rows.end())).matrix();
+    const double spread = (at.array() - at.mean()).square().mean();
+    if (!(spread > 0)) continue;
+    const Eigen::Index n = at.size();
+    next += (at.tail(n - 1) - at.head(n - 1)).squaredNorm() / static_cast<double>(n - 1) / spread;
+    any += 2;  // mean square of the difference of two independent values, in units of their variance
+  }
+  return any > 0 && next < kMuchNearer * any;
+}
+
 /// Adds a finding if neighbours in time are correlated after all findings are removed.
 void add_wandering(const KindSample& sample, const FindingContext& context, const Search& search,
                    const std::vector<Taken>& taken, std::vector<Finding>& findings) {
@@ -659,6 +677,7 @@ void add_wandering(const KindSample& sample, const FindingContext& context, cons
                                static_cast<double>(rest.size()));
   SentenceFacts facts;
   facts.at_low_um = best.correlation;
+  facts.in_space = follow_each_other_in_space(sample, context.measurement);
   f.sentence = sentence_of(f, facts);
   findings.push_back(f);
 }

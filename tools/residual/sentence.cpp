@@ -103,6 +103,13 @@ std::string statement(const Finding& f, const SentenceFacts& facts) {
           "all)",
           subject(f), f.column, f.second_column, f.high_um - f.low_um, unit_of(f));
     case Shape::kWanders:
+      if (facts.in_space)
+        return fmt::format(
+            "{} is nearly the same in successive rows (correlation {:.2f}), and successive rows are "
+            "neighbours "
+            "in position: the error depends on the position in a way that no single column shows, or it "
+            "drifts",
+            subject(f), facts.at_low_um);
       return fmt::format(
           "{} drifts slowly: successive rows agree (correlation {:.2f}), and no recorded column explains "
           "this",

@@ -397,6 +397,32 @@ TEST(FailurePicture, PowerAgainstSmoothErrors) {
   }
 }
 
+// A bed that is probed row by row: its shape is no drift.
+TEST(FailurePicture, AShapeInSpaceIsNotCalledADrift) {
+  const Machine machine = parse_machine(kMachine, "m");
+  std::string text = "X[mm],Y[mm],Z[mm],t[s],z[mm],u[mm]\n";
+  constexpr int kAcross = 12;
+  for (int row = 0; row < kAcross * kAcross; ++row) {
+    const int line = row / kAcross, at = row % kAcross;
+    text += std::to_string(30 * (line % 2 == 0 ? at : kAcross - 1 - at)) + "," + std::to_string(30 * line) +
+            ",0," + std::to_string(2 * row) + ",0,0.001\n";
+  }
+  const Measurement m = parse_measurement(text, "bed", machine);
+  std::mt19937_64 random(20261130);
+  Eigen::VectorXd residual = white(m, 0.001, random);
+  plant(residual, m, ObservationKind::kZ, [&](Eigen::Index row) {
+    const double x = m.states.axis[0][row], y = m.states.axis[1][row];
+    return 0.02 * std::sin(x / 45) * std::sin(y / 40);
+  });
+  const FailurePicture picture = failure_picture(machine, m, residual, {});
+  bool space = false;
+  for (const Finding& f : picture.findings) {
+    EXPECT_EQ(f.sentence.find("drifts slowly"), std::string::npos) << f.sentence;
+    space = space || f.sentence.find("successive rows are neighbours in position") != std::string::npos;
+  }
+  EXPECT_TRUE(space);
+}
+
 TEST(FailurePicture, SmoothNoiseInTimeDoesNotAccuseColumns) {
   // First-order correlated noise (0.9) beside columns that wander as slowly: what comes of it may be called
   // drift, but no input may be accused in more than a few of 100 surveys.
