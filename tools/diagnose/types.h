@@ -92,7 +92,8 @@ struct LadderStep {
   /// confirmation.
   std::optional<bool> confirmed;
   std::optional<double> evidence;
-  bool of_check_rows = false;  // true: the evidence is that of the check rows; false: of runs held out in turn
+  bool of_check_rows =
+      false;  // true: the evidence is that of the check rows; false: of runs held out in turn
   /// False if no cause is named, or if a step after the first has several possible causes. Also false if a
   /// named effect stands beside effects that cannot be what their names state, and this step is one of them
   /// or may be a part of the same error. The command improve does not add such a step.

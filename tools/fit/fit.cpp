@@ -17,7 +17,6 @@
 #include "tools/fit/coverage/unseen_turns.h"
 #include "tools/fit/decisions.h"
 #include "tools/fit/estimates_of_things.h"
-#include "tools/fit/files/file_factors.h"
 #include "tools/fit/findings.h"
 #include "tools/fit/least_squares/problem.h"
 #include "tools/fit/least_squares/statistics.h"
@@ -27,6 +26,7 @@
 #include "tools/fit/settle.h"
 #include "tools/fit/size.h"
 #include "tools/fit/solve.h"
+#include "tools/format/columns.h"
 #include "tools/format/readings.h"
 #include "tools/maths/factors.h"
 #include "tools/model/chain/chain.h"
@@ -287,7 +287,7 @@ std::optional<model::FitRecord::Noise> kept_noise(const NoiseModel& noise, const
                                  noise.drifts};
 }
 
-/// Returns the measured ranges of axes and inputs.
+/// Returns the measured ranges of axes, inputs and the time.
 std::vector<model::FitRecord::Range> measured_ranges(const model::Machine& machine,
                                                      const model::Measurement& rows) {
   std::vector<std::size_t> fitted;
@@ -303,6 +303,9 @@ std::vector<model::FitRecord::Range> measured_ranges(const model::Machine& machi
     const model::Column value = rows.states.input[i](fitted);
     list.push_back({machine.inputs[i].name, value.minCoeff(), value.maxCoeff()});
   }
+  const model::Column time = rows.states.time(fitted);
+  if (time.maxCoeff() > time.minCoeff())
+    list.push_back({format::columns::kTime, time.minCoeff(), time.maxCoeff()});
   return list;
 }
 
@@ -522,6 +525,17 @@ bool may_differ_by_file(const Settled& end, const model::Measurement& m, const F
          end.variance > kAboveU * kAboveU;
 }
 
+std::optional<FittedAlone> fitted_alone(const model::Machine& machine, const model::Measurement& own) {
+  FitOptions independent;
+  independent.noise = NoiseModel{};
+  try {
+    const FitResult alone = fit(machine, own, independent);
+    if (alone.converged) return FittedAlone{alone.chi_square, alone.freedom};
+  } catch (const text::InputError&) {  // the model is undefined for these rows alone
+  }
+  return std::nullopt;
+}
+
 /// Writes the noise of a fit with other weights in units of the stated u.
 void in_stated_units(Settled& end, const model::Measurement& stated, const model::Measurement& weighed) {
   const NoiseUnit before = noise_unit(weighed), after = noise_unit(stated);
@@ -560,7 +574,8 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   Solution solution = solved(result, machine, rows, convention, stated, options);
   model::Measurement weighed = measurement;
   if (may_differ_by_file(solution.end, measurement, options))
-    result.file_factors = file_factors(machine, measurement);
+    result.file_factors =
+        file_factors(measurement, [&](const model::Measurement& own) { return fitted_alone(machine, own); });
   if (!result.file_factors.empty()) {
     weighed = with_factors(measurement, result.file_factors);
     rows = model::select_rows(weighed, kept);

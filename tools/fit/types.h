@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/fit/least_squares/file_factors.h"
 #include "tools/fit/least_squares/observability.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/noise/noise.h"
@@ -154,14 +155,6 @@ struct ThingEstimate {
   double u_direction_deg = 0;
   std::optional<double> radius_mm;
   double u_radius_mm = 0;
-};
-
-/// How far the readings of a file are from the model, beyond their stated u (tools/fit/files/file_factors.h).
-struct FileFactor {
-  std::size_t file = 0;  // index in Measurement::files
-  std::string name;      // of the file
-  double factor = 1;     // factor of u in the fit, at least 1
-  std::string sentence() const;
 };
 
 /// The lengths that determine the size of the machine.

@@ -12,6 +12,7 @@
 
 #include "tools/fit/coverage/reach.h"
 #include "tools/fit/fit.h"
+#include "tools/format/columns.h"
 #include "tools/kinematics/correction.h"
 #include "tools/kinematics/jacobian.h"
 #include "tools/maths/decompositions.h"
@@ -270,6 +271,7 @@ class Judge {
             {overhang(measured, *item.min, *item.max), region("input", measured, *item.min, *item.max)});
       }
     }
+    add_outside_time(inputs);
     add_outside(SafetyRule::kMeasuredRange, std::move(axes));
     add_outside(SafetyRule::kInputRange, std::move(inputs));
   }
@@ -279,6 +281,37 @@ class Judge {
     double share = 0;  // of the measured range
     std::string text;
   };
+
+  /// A board counts the time from its start and runs for days. If the correction still changes at the end of
+  /// the measured time, as a drift of the base or of the instrument does and a warm-up that ended does not,
+  /// its terms in the time are extrapolated.
+  void add_outside_time(std::vector<Outside>& list) const {
+    constexpr double kDay_s = 86400, kStillChanges = 0.25;  // of the change within the measured time
+    constexpr double kNothing_mm = 1e-4;                    // as in judge_cancellation()
+    if (!acts(machine_, {model::SymbolKind::kTime, 0})) return;
+    for (const model::FitRecord::Range& measured : machine_.fitted->measured) {
+      if (measured.name != format::columns::kTime) continue;
+      const double length = measured.max - measured.min;
+      const auto at = [&](double time) {
+        model::States states = poses_.states;
+        states.time.setConstant(time);
+        return model::deviation(machine_, states);
+      };
+      const auto apart_mm = [&](double from, double to) {
+        return (at(to) - at(from)).colwise().norm().maxCoeff();
+      };
+      const double within = apart_mm(measured.min, measured.max),
+                   after = apart_mm(measured.max, measured.max + length);
+      if (after < kNothing_mm || after < kStillChanges * within) return;
+      list.push_back(
+          {(kDay_s - measured.max) / length,
+           fmt::format("time t, measured from {:g} to {:g} s: the correction changes by {:.3g} um in "
+                       "it and by {:.3g} um in the same time after it, and a board runs for days. A "
+                       "drift of the base or of the instrument is no error that a board can correct: "
+                       "set its static to 0",
+                       measured.min, measured.max, maths::kUmPerMm * within, maths::kUmPerMm * after)});
+    }
+  }
 
   /// The part of the measured range of a linear axis that is outside its travel, as a share of the travel:
   /// readings of another machine, if it is longer than the travel itself. Min and max that are less may be

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/fit/files/file_factors.h"
+#include "tools/fit/least_squares/file_factors.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
 
-#include "tools/fit/fit.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/maths/chance.h"
-#include "tools/text/error.h"
 
 namespace vernier::fit {
 namespace {
@@ -21,12 +19,7 @@ constexpr double kOtherFactor = 3;
 /// Probability of a residual by chance, below which the model leaves an error in the file.
 constexpr double kByChance = 1e-3;
 
-/// The factor of one file; nullopt: this file alone has no solution.
-std::optional<double> factor_alone(const model::Machine& machine, const model::Measurement& own) {
-  FitOptions independent;
-  independent.noise = NoiseModel{};
-  const FitResult alone = fit(machine, own, independent);
-  if (!alone.converged) return std::nullopt;
+double factor_of(const FittedAlone& alone) {
   if (alone.freedom < 1 || maths::chi_square_tail(alone.chi_square, alone.freedom) > kByChance) return 1;
   return std::max(1.0, std::sqrt(alone.chi_square / alone.freedom));
 }
@@ -40,7 +33,7 @@ std::string FileFactor::sentence() const {
       name, factor, factor);
 }
 
-std::vector<FileFactor> file_factors(const model::Machine& machine, const model::Measurement& rows) {
+std::vector<FileFactor> file_factors(const model::Measurement& rows, const FitOfFile& fit) {
   std::vector<FileFactor> list;
   if (rows.files.size() < 2 || !has_uncertainty(rows)) return list;
   std::vector<std::vector<std::size_t>> rows_of(rows.files.size());
@@ -52,13 +45,9 @@ std::vector<FileFactor> file_factors(const model::Machine& machine, const model:
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (std::size_t file = 0; file < rows_of.size(); ++file) {
     if (fitted[file] == 0) continue;
-    try {
-      const std::optional<double> factor = factor_alone(machine, model::select_rows(rows, rows_of[file]));
-      if (!factor) return {};
-      list.push_back({file, rows.files[file], *factor});
-    } catch (const text::InputError&) {
-      return {};  // the model is undefined for these rows alone
-    }
+    const std::optional<FittedAlone> alone = fit(model::select_rows(rows, rows_of[file]));
+    if (!alone) return {};
+    list.push_back({file, rows.files[file], factor_of(*alone)});
     least = std::min(least, list.back().factor);
     most = std::max(most, list.back().factor);
   }
