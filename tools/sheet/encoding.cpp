@@ -79,6 +79,23 @@ std::string from_utf16(std::string_view bytes, bool big) {
   return text;
 }
 
+/// True for a line in UTF-8 with a letter that is not ASCII: two such bytes are no usual letters of
+/// Windows-1252.
+bool is_utf8_line(std::string_view line) {
+  return is_utf8(line) && std::any_of(line.begin(), line.end(), [](char c) { return (c & 0x80) != 0; });
+}
+
+/// Calls `each` for each line, with its line end.
+template <typename Each>
+void for_each_line(std::string_view bytes, const Each& each) {
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t end = bytes.find('\n', at);
+    const std::size_t next = end == std::string_view::npos ? bytes.size() : end + 1;
+    each(bytes.substr(at, next - at));
+    at = next;
+  }
+}
+
 std::string from_windows(std::string_view bytes) {
   std::string text;
   for (std::size_t at = 0; at < bytes.size(); ++at) {
@@ -130,9 +147,21 @@ std::string utf8_of(std::string_view bytes, Encoding encoding) {
     case Encoding::kUtf16Be:
       return from_utf16(bytes, true);
     case Encoding::kWindows1252:
-      return from_windows(bytes);
+      break;
   }
-  return {};
+  // Two files that were joined: a line that is UTF-8 stays as it is.
+  std::string text;
+  for_each_line(bytes, [&](std::string_view line) {
+    text += is_utf8_line(line) ? std::string(line) : from_windows(line);
+  });
+  return text;
+}
+
+bool mixes_encodings(std::string_view bytes) {
+  if (encoding_of(bytes) != Encoding::kWindows1252) return false;
+  bool mixed = false;
+  for_each_line(bytes, [&](std::string_view line) { mixed |= is_utf8_line(line); });
+  return mixed;
 }
 
 std::string utf8_text(std::string_view bytes) { return utf8_of(bytes, encoding_of(bytes)); }

@@ -17,7 +17,11 @@ const char* encoding_name(Encoding encoding);
 Encoding encoding_of(std::string_view bytes);
 
 /// Returns the text as UTF-8 without a byte order mark. Bytes that are not valid become the character U+FFFD.
+/// In a text of the code page Windows-1252, a line that is UTF-8 with letters beyond ASCII is not changed.
 std::string utf8_of(std::string_view bytes, Encoding encoding);
+
+/// True if a text has lines in UTF-8 and lines in Windows-1252, each with letters beyond ASCII.
+bool mixes_encodings(std::string_view bytes);
 
 /// Returns the text as UTF-8 without a byte order mark. The encoding is the one that encoding_of detects.
 std::string utf8_text(std::string_view bytes);

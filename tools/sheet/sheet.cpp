@@ -571,6 +571,9 @@ Sheet read_sheet(const std::string& bytes, const std::string& file, const SheetF
     read_from_workbook(sheet, bytes, format);
   } else {
     sheet.encoding = encoding_of(bytes);
+    if (mixes_encodings(bytes))
+      sheet.notes.emplace_back(
+          "the file has lines in UTF-8 and lines in Windows-1252: each line is read in its own encoding");
     const std::string text = text::with_plain_blanks(text::without_invisible(utf8_of(bytes, sheet.encoding)));
     if (text.find('\0') != std::string::npos)
       throw text::InputError({file, 0}, "",

@@ -33,6 +33,16 @@ TEST(Encoding, IsToldByMarkAndByBytes) {
   EXPECT_EQ(encoding_of(Text("\xFE\xFF\0a\0;", 6)), Encoding::kUtf16Be);
   EXPECT_EQ(encoding_of(Text("a\0;\0b\0\n\0", 8)), Encoding::kUtf16Le);  // without a mark
   EXPECT_EQ(encoding_of("\xB5m"), Encoding::kWindows1252);
+  // Two files joined: each line in its own encoding.
+  const std::string mixed =
+      "Abweichung [\xC2\xB5m]\nR\xFC"
+      "cklauf\n";
+  EXPECT_TRUE(mixes_encodings(mixed));
+  EXPECT_FALSE(mixes_encodings("[\xC2\xB5m]\n"));
+  EXPECT_FALSE(mixes_encodings("[\xB5m]\n"));
+  EXPECT_EQ(utf8_text(mixed),
+            "Abweichung [\xC2\xB5m]\nR\xC3\xBC"
+            "cklauf\n");
   EXPECT_EQ(encoding_of("\xC2\xB5m"), Encoding::kUtf8);
 }
 
