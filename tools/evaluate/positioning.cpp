@@ -157,7 +157,11 @@ PositioningFile read_positioning(const std::string& text, const std::string& fil
       const double before = position[row - 1];
       sense = at > before ? 1 : at < before ? -1 : -sense;
     }
-    if (std::isnan(readings[row]) || sense == 0) continue;
+    if (std::isnan(readings[row])) continue;
+    if (sense == 0) {
+      ++result.undirected;
+      continue;
+    }
     TargetReadings& target = targets[std::llround(at * 1e6)];
     target.target = at;
     target.deviation[sense > 0 ? 0 : 1].push_back(readings[row] - at);

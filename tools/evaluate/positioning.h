@@ -50,8 +50,9 @@ struct PositioningFile {
   std::vector<TargetReadings> readings;
   std::string unit;  // unit of all values: mm or deg
   bool sense_from_order = false;
-  std::size_t rows = 0;     // number of rows that were used
-  std::optional<double> u;  // largest standard uncertainty in the rows
+  std::size_t rows = 0;        // number of rows that were used
+  std::size_t undirected = 0;  // number of readings without an approach direction (dirX 0), which are omitted
+  std::optional<double> u;     // largest standard uncertainty in the rows
 };
 PositioningFile read_positioning(const std::string& text, const std::string& file, const std::string& axis,
                                  const std::string& reading);

@@ -121,6 +121,7 @@ Json positioning_json(const PositioningResult& result, const PositioningFile& fi
       {"unit", file.unit == "mm" ? "um" : "arcsec"},
       {"position_unit", file.unit},
       {"n_rows", file.rows},
+      {"n_undirected", file.undirected},
       {"n_targets", result.targets.size()},
       {"sense", file.sense_from_order ? "from the order of the rows"
                                       : format::axis_column(format::AxisQuantity::kSense, words.axis)}};

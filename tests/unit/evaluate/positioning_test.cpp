@@ -91,6 +91,14 @@ TEST(Positioning, OneSenseHasNoReversal) {
   EXPECT_NEAR(*result.repeatability[0], 4 * std::sqrt(2.0) * 1e-3, 1e-9);
 }
 
+TEST(Positioning, ReadingsWithoutADirectionAreCounted) {
+  const PositioningFile file = read_positioning(
+      "X[mm],x[mm],dirX\n0,0.001,0\n10,10.001,1\n20,20.001,1\n0,0.002,0\n10,10.003,1\n20,,0\n", "s.csv", "X",
+      "x");
+  EXPECT_EQ(file.undirected, 2u);
+  EXPECT_EQ(file.rows, 3u);
+}
+
 TEST(Positioning, SenseComesFromTheOrderOfTheRowsToo) {
   // Up, the far end again from beyond, down, and once more.
   const PositioningFile file = read_positioning(

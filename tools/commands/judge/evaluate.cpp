@@ -30,6 +30,12 @@ void print_result(std::FILE* out, const nlohmann::ordered_json& json) {
   fmt::print(out, "axis {}: {} targets, {} readings, sense {}\n", json["axis"].get<std::string>(),
              json["n_targets"].get<std::size_t>(), json["n_rows"].get<std::size_t>(),
              json["sense"].get<std::string>());
+  if (const auto undirected = json["n_undirected"].get<std::size_t>(); undirected > 0)
+    fmt::print(
+        out,
+        "note: {} readings have no approach direction ({} is 0) and are omitted: ISO 230-2 evaluates each "
+        "direction for itself\n",
+        undirected, json["sense"].get<std::string>());
   const std::string unit = json["unit"];
   for (const auto& one : json["characteristics"]) {
     if (one["value"].is_null()) continue;
@@ -89,6 +95,7 @@ void run_positioning(const PositioningArguments& arguments) {
         evaluate::read_positioning(text::read_file(path), path, words.axis, reading);
     all.unit = one.unit;
     all.rows += one.rows;
+    all.undirected += one.undirected;
     all.sense_from_order |= one.sense_from_order;
     for (evaluate::TargetReadings& target : one.readings) {
       bool known = false;
