@@ -272,5 +272,46 @@ TEST(PrinterFile, HeightMapsOfBothVersions) {
   EXPECT_THAT(read(present.substr(0, present.size() - 26), nozzle), HasSubstr("fewer than the 2 rows"));
 }
 
+/// A log of touches with the configuration of 3 x 2 points; the survey ends if `end` is true.
+std::string survey(std::size_t points, bool end) {
+  std::string text;
+  for (std::size_t i = 0; i < points; ++i)
+    text += "probe at " + std::to_string(10 + 50 * (i % 3)) + "," + std::to_string(20 + 60 * (i / 3)) +
+            " is z=0.1\n";
+  return text + (end ? "Mesh Bed Leveling Complete\n" : "");
+}
+
+std::string notes(const std::string& text, const PrinterOptions& options = {}) {
+  std::string all;
+  for (const std::string& note : read_printer_file(text, "p.log", options).notes) all += note + "\n";
+  return all;
+}
+
+TEST(PrinterFile, IncompleteAndRepeatedSurveysAreNoted) {
+  PrinterOptions all;
+  all.series = PrinterOptions::Survey::kAll;
+  const std::string configuration = "[bed_mesh]\nprobe_count: 3,2\n";
+  EXPECT_EQ(notes(configuration + survey(6, true)), "");
+  EXPECT_THAT(notes(configuration + survey(5, false)),
+              HasSubstr("has 5 of 6 points: the log may end before"));
+  EXPECT_THAT(notes(survey(6, true) + survey(4, true), all),
+              HasSubstr("survey 2 (from line 8) has 4 of 6 points;"));
+  EXPECT_THAT(
+      notes(survey(4, false) + survey(6, true)),
+      HasSubstr("line 5: the survey that began in line 1 begins again at its first point: the 4 touches"));
+}
+
+TEST(PrinterFile, TheOtherMeshesOfAFileAreNamed) {
+  const std::string other =
+      "#*# [bed_mesh PETG]\n#*# points =\n#*# \t1, 2\n#*# x_count = 2\n#*# y_count = 1\n"
+      "#*# min_x = 0\n#*# max_x = 10\n#*# min_y = 5\n#*# max_y = 5\n";
+  EXPECT_THAT(notes(kConfiguration + other),
+              HasSubstr("2 saved meshes (PETG, default), and \"default\" is read"));
+  EXPECT_EQ(notes(kConfiguration), "");
+  PrinterOptions options;
+  options.profile = "PETG";
+  EXPECT_EQ(notes(kConfiguration + other, options), "");
+}
+
 }  // namespace
 }  // namespace vernier::printer_file_test

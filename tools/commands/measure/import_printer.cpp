@@ -59,6 +59,7 @@ void run_printer(PrinterArguments& arguments) {
                                           {"n_not_probed", read.not_probed},
                                           {"n_left_out", read.left_out},
                                           {"surveys", read.surveys},
+                                          {"notes", read.notes},
                                           {"n_rows", rows}});
   std::FILE* out = human_stream(arguments.output.json_path);
   fmt::print(out, "{}{}: {} touches of the artefact \"{}\"\n", name_of(read.kind),
@@ -88,6 +89,7 @@ void run_printer(PrinterArguments& arguments) {
         "note: the log has several surveys of the bed, which are read as one table: {}; to read one of "
         "them (if the screws of the bed were turned between them), give --series with its number\n",
         read.surveys);
+  for (const std::string& note : read.notes) fmt::print(out, "note: {}\n", note);
   if (read.not_probed > 0)
     fmt::print(out, "{} points of the height map have no reading and are omitted\n", read.not_probed);
   if (read.left_out > 0)

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <string_view>
+#include <utility>
 
 #include "tools/format/columns.h"
 #include "tools/sheet/encoding.h"
@@ -92,12 +94,17 @@ std::map<std::string, Section> sections_of(const std::string& text) {
 
 constexpr std::string_view kMesh = "bed_mesh ";
 
-/// The mesh that the user names, the only one, or "default".
-std::string mesh_name(const std::map<std::string, Section>& sections, const std::string& file,
-                      const std::string& profile) {
+std::vector<std::string> names_of_meshes(const std::map<std::string, Section>& sections) {
   std::vector<std::string> names;
   for (const auto& [name, section] : sections)
     if (name.starts_with(kMesh) && section.contains("points")) names.push_back(name.substr(kMesh.size()));
+  return names;
+}
+
+/// The mesh that the user names, the only one, or "default".
+std::string mesh_name(const std::map<std::string, Section>& sections, const std::string& file,
+                      const std::string& profile) {
+  const std::vector<std::string> names = names_of_meshes(sections);
   const auto has = [&](const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
@@ -423,6 +430,7 @@ class ProbeLog {
       else
         remark(text::in_small_letters(line));
     }
+    cut_off_ = touches_.size() > begin_of(series_.size());
     end_series();
     take_offset(text);
     // One clock for all surveys of a log: the second survey of the bed does not begin at 0 s.
@@ -431,10 +439,81 @@ class ProbeLog {
     // Without a line that ends a survey, the temperature alone tells the surveys.
     if (series_.size() < 2)
       if (const auto ends = ends_by_temperature(); ends.size() > 1) series_ = ends;
+    configured_ = configured_points(text);
+    note_begun_again();
+    note_incomplete();
     return chosen();
   }
 
  private:
+  /// Number of points of a survey by the configuration in the log; 0: the log has none.
+  std::size_t configured_points(const std::string& text) const {
+    const auto sections = sections_of(text);
+    const auto mesh = sections.find("bed_mesh");
+    if (mesh == sections.end()) return 0;
+    const auto setting = mesh->second.find("probe_count");
+    if (setting == mesh->second.end()) return 0;
+    std::size_t points = 1, numbers = 0;
+    for (const std::string& word : text::words_in(setting->second.value, ", \t")) {
+      const auto count = text::parse_count(word);
+      if (!count) return 0;
+      points *= *count;
+      ++numbers;
+    }
+    return numbers == 1 ? points * points : numbers == 2 ? points : 0;
+  }
+
+  /// Numbers of the different points of each survey.
+  std::size_t points_of(std::size_t first, std::size_t end) const {
+    std::set<std::pair<double, double>> points;
+    for (std::size_t i = first; i < end; ++i) points.emplace(touches_[i].axes[0], touches_[i].axes[1]);
+    return points.size();
+  }
+
+  /// Notes a survey whose first point is touched again after other points, at the same temperature: the
+  /// touches before are those of a survey that was stopped.
+  void note_begun_again() {
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < series_.size(); ++k) {
+      std::size_t begin = first;
+      for (std::size_t i = first + 1; i < series_[k]; ++i) {
+        const bool again =
+            touches_[i].axes[0] == touches_[begin].axes[0] && touches_[i].axes[1] == touches_[begin].axes[1];
+        const bool moved =
+            touches_[i - 1].axes[0] != touches_[i].axes[0] || touches_[i - 1].axes[1] != touches_[i].axes[1];
+        if (!again || !moved || i - begin < kFewestTouches) continue;
+        result_.notes.push_back(fmt::format(
+            "line {}: the survey that began in line {} begins again at its first point: the {} touches "
+            "before may "
+            "be of a survey that was stopped, and are read too; to read the complete survey alone, delete "
+            "the "
+            "lines {} to {} of the log",
+            touches_[i].line, touches_[begin].line, i - begin, touches_[begin].line, touches_[i - 1].line));
+        begin = i;
+      }
+      first = series_[k];
+    }
+  }
+
+  /// Notes a survey with fewer points than the configuration states, or than another survey of the log.
+  void note_incomplete() {
+    std::size_t most = configured_, first = 0;
+    for (const std::size_t end : series_) {
+      most = std::max(most, points_of(first, end));
+      first = end;
+    }
+    first = 0;
+    for (std::size_t k = 0; k < series_.size(); ++k) {
+      const std::size_t points = points_of(first, series_[k]);
+      if (points < most)
+        result_.notes.push_back(fmt::format(
+            "survey {} (from line {}) has {} of {} points{}; the other points of the bed are not in the file",
+            k + 1, touches_[first].line, points, most,
+            cut_off_ && series_[k] == touches_.size() ? ": the log may end before the survey" : ""));
+      first = series_[k];
+    }
+  }
+
   /// "heater_bed: target=60 temp=59.9 pwm=0.3" names a temperature.
   void state(const std::string& line, double t) {
     now_.t = t;
@@ -537,7 +616,6 @@ class ProbeLog {
 
   /// Ends of the surveys: a touch at the first point of a survey again, at another temperature.
   std::vector<std::size_t> ends_by_temperature() const {
-    constexpr std::size_t kFewestTouches = 4;  // of a survey of a bed
     std::vector<std::size_t> ends;
     std::size_t first = 0;
     for (std::size_t i = 1; i < touches_.size(); ++i) {
@@ -589,10 +667,13 @@ class ProbeLog {
     return touches_;
   }
 
+  static constexpr std::size_t kFewestTouches = 4;  // of a survey of a bed
   PrinterFile& result_;
   const std::string& file_;
   const PrinterOptions& options_;
-  Touch now_;  // time and temperatures of the last state
+  std::size_t configured_ = 0;  // points of a survey
+  bool cut_off_ = false;        // no line of the log ends the last survey
+  Touch now_;                   // time and temperatures of the last state
   std::vector<Touch> touches_;
   std::size_t first_of_point_ = 0;   // index of the first touch of the present point
   std::vector<std::size_t> series_;  // ends of the surveys of the bed
@@ -659,6 +740,10 @@ PrinterFile read_printer_file(const std::string& text, const std::string& file,
     const auto sections = sections_of(text);
     result.kind = PrinterFile::Kind::kSavedMesh;
     result.name = mesh_name(sections, file, options.profile);
+    if (const auto names = names_of_meshes(sections); options.profile.empty() && names.size() > 1)
+      result.notes.push_back(fmt::format(
+          "the file has {} saved meshes ({}), and \"{}\" is read; to read another one, give --profile NAME",
+          names.size(), text::joined(names, ", "), result.name));
     if (!options.offset_mm) result.offset_mm = offset_in(sections, file);
     const bool alone = std::all_of(sections.begin(), sections.end(),
                                    [](const auto& one) { return one.first.starts_with(kMesh); });

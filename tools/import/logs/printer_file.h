@@ -44,6 +44,7 @@ struct PrinterFile {
   std::size_t left_out = 0;              // number of touches in a log that the printer discarded
   std::string surveys;                   // of a log whose surveys are read as one table: the list of them;
                                          // empty: the log has one, or the user chose one
+  std::vector<std::string> notes;        // about other meshes of the file, and surveys that are not complete
   ImportTable table;                     // columns X[mm], Y[mm], Z[mm], on; probeX[mm] and probeY[mm] if the
                                          // probe has an offset; if known u, t[s], temperatures
 };
@@ -63,9 +64,11 @@ bool is_printer_file(const std::string& bytes);
 /// probeX and probeY have the offset. If the file has z_compensations of [axis_twist_compensation], the
 /// heights are those that the nozzle has at the touched point (PrinterOptions::twist): the position of the
 /// axes is then the touched point, and the table has no columns probeX and probeY. Touches during levelling,
-/// and repeated touches at one position (PROBE_ACCURACY), are excluded. If a log has several surveys of the
-/// bed, and not their temperatures tell them apart, the option `series` is necessary. If the file is not
-/// valid, throws InputError with file, line and word.
+/// and repeated touches at one position (PROBE_ACCURACY), are excluded. A survey with fewer
+/// points than another one of the log, or than its configuration states, and a survey that begins again at
+/// its first point, get a note. If a log has several surveys of the bed, and not their temperatures tell them
+/// apart, the option `series` is necessary. If the file is not valid, throws InputError with file, line and
+/// word.
 PrinterFile read_printer_file(const std::string& text, const std::string& file,
                               const PrinterOptions& options);
 
