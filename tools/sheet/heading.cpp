@@ -363,9 +363,28 @@ bool is_line_of_units(const Sheet& sheet, std::size_t row) {
   return units > 0;
 }
 
+namespace {
+
+/// "X [mm]", 1, 2, 3, 4: the headings of a column of positions and of the numbers of runs, above a row of
+/// numbers.
+bool is_line_of_run_numbers(const Sheet& sheet, std::size_t row) {
+  constexpr std::size_t kFewest = 2;  // one number is a value
+  const std::vector<std::string>& cells = sheet.rows[row];
+  if (row + 1 >= sheet.rows.size() || cells.empty() || parse_heading(cells.front()).unit.empty() ||
+      is_numeric(cells.front(), sheet) || number_and_unit(cells.front(), sheet.decimal_comma))
+    return false;
+  std::size_t runs = 0;
+  for (std::size_t k = 1; k < cells.size() && !cells[k].empty(); ++k)
+    if (cells[k] != std::to_string(++runs)) return false;
+  return runs >= kFewest && is_numeric(sheet.rows[row + 1].front(), sheet);
+}
+
+}  // namespace
+
 bool is_row_of_data(const Sheet& sheet, std::size_t row) {
-  // Headings that are numbers of runs (1, 2, 3) have their units below.
+  // Headings that are numbers of runs (1, 2, 3) have their units below, or beside them.
   if (row + 1 < sheet.rows.size() && is_line_of_units(sheet, row + 1)) return false;
+  if (is_line_of_run_numbers(sheet, row)) return false;
   std::size_t numbers = 0, filled = 0;
   for (const std::string& cell : sheet.rows[row]) {
     filled += cell.empty() || is_date(cell) ? 0 : 1;

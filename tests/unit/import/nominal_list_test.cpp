@@ -91,5 +91,28 @@ TEST(NominalList, WhatCannotBeJoinedIsNamed) {
               HasSubstr("nom.csv:1: \"Y\": the list of nominal positions has no column for this axis"));
 }
 
+/// A robot with three joints and links of 100, 80 and 60 mm.
+constexpr const char* kRobot =
+    R"xml(<machine name="r"><variables><static><k value="0" nominal="0"/></static>
+  <machineaxes><joint_1 rotary="true" min="-170" max="170"/><joint_2 rotary="true" min="-170" max="170"/>
+  <joint_3 rotary="true" min="-170" max="170"/></machineaxes></variables>
+  <transforms><sixdof n="1" X="0" Y="0" Z="100" rX="0" rY="0" rZ="joint_1"/>
+  <sixdof n="2" X="80" Y="0" Z="0" rX="0" rY="joint_2" rZ="0"/>
+  <sixdof n="3" X="60" Y="0" Z="0" rX="0" rY="joint_3+k" rZ="0"/></transforms></machine>)xml";
+
+TEST(NominalList, JointsMayHaveTheirUsualNames) {
+  ImportTable table = points(true);
+  const model::Machine machine = model::parse_machine(kRobot, "r.xml");
+  const NominalTable joined =
+      with_nominal(table, "Punkt;A1 [deg];A2 [deg];A3 [deg]\nP1;0;0;0\nP2;10;20;30\nP3;20;5;9\nP4;-5;6;70\n",
+                   "nom.csv", machine, 1e6);
+  EXPECT_THAT(measurement_csv(joined.table),
+              testing::StartsWith(
+                  "joint_1[deg],joint_2[deg],joint_3[deg],point,x[mm],y[mm],z[mm]\n0,0,0,A::Vol::P1,"));
+  EXPECT_THROW(with_nominal(table, "Punkt;A1;A2;A3\nP1;0;0;0\nP2;10;20;30\nP3;20;5;9\nP4;-5;6;70\n",
+                            "nom.csv", machine, 1e6),
+               text::InputError);  // without units
+}
+
 }  // namespace
 }  // namespace vernier::nominal_list_test

@@ -287,5 +287,37 @@ TEST(PointDistances, AListHasThePositionsOfTheMachine) {
             HasSubstr("n.csv: no distance to the point C")));
 }
 
+TEST(PointDistances, ReadingsOfOneDistanceThatDifferAreNoted) {
+  const std::string rows = "Strecke;Ist\nAB;170,31\nBC;169,84\nAC;240,30\nCA;240,95\nBD;240,79\n";
+  EXPECT_THAT(
+      read(rows, square()),
+      AllOf(HasSubstr("A-C,200,200,0.2,240.3,A\nC-A,30,30,0.2,240.95,C\n"),
+            HasSubstr("the readings of the distance of A and C differ by 0.65 mm (240.3 mm in line 4, 240.95 "
+                      "mm in line 5), more than 0.1 mm")));
+  // 2.8 u for two readings: 0.84 mm, 0.56 mm.
+  EXPECT_THAT(read(rows, with(kCorners, {"u[mm]=0.3"})), Not(HasSubstr("differ by")));
+  EXPECT_THAT(read(rows, with(kCorners, {"u[um]=200"})), HasSubstr("more than 0.56 mm for u = 0.2 mm"));
+}
+
+TEST(PointDistances, ADoubtfulUnitIsNamedWithTheRightOne) {
+  EXPECT_THAT(read("Seite;Abweichung (1/100)\nAB;31\nBC;-16\nAC;-12\nBD;37\n", square()),
+              AllOf(StartsWith("refused: "), HasSubstr("--column \"deviation[0.01mm]=Abweichung (1/100)\""),
+                    Not(HasSubstr("--unit mm"))));
+  EXPECT_THAT(
+      read("Strecke;Soll [mm];Ist [mm]\nAB;17,000;17,031\nBC;17,000;16,984\nAC;24,042;24,030\nBD;24,042;"
+           "24,079\n",
+           square()),
+      AllOf(StartsWith("refused: "), HasSubstr("all of them agree in cm")));
+  EXPECT_THAT(
+      read("Strecke;Soll;Ist\nAB;170;170,31\nBC;170;169,84\nAC;170;240,30\nBD;170;240,79\n", square()),
+      AllOf(StartsWith("refused: "), HasSubstr("correct the nominal distance, or leave out this column")));
+}
+
+TEST(PointDistances, ATableInAnotherFormIsRefusedWithTheFormToWrite) {
+  EXPECT_THAT(read(";A;B;C;D\nA;0;170,31;240,30;169,81\nB;170,31;0;169,84;240,79\nC;240,30;169,84;0;170,30\n",
+                   square()),
+              AllOf(StartsWith("refused: "), HasSubstr("write one row for each distance")));
+}
+
 }  // namespace
 }  // namespace vernier::point_distances_test

@@ -166,8 +166,10 @@ void refuse_robot_without_units(const OpenAxes& open, const importer::SheetReadi
   throw text::InputError(
       {reading.sheet.file, reading.sheet.line[reading.table.heading_row]}, "",
       fmt::format(
-          "the columns of the point have no unit. If the measured point is in mm, and the joints are in "
-          "the units of this call, give: {}{} -o {}",
+          "the columns of the point have no unit. If an instrument measured this point (a position that the "
+          "control shows is computed from the joints, and is no measurement), the point is in mm, and the "
+          "joints "
+          "are in the units of this call, give: {}{} -o {}",
           call_of(kind, {"--output", "--json", "--unit", "--column"}), options,
           output->count() > 0 ? lint::quoted_for_shell(output->results().front()) : "NEW.csv"));
 }

@@ -10,6 +10,7 @@
 #include "tools/format/units.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
+#include "tools/sheet/sheet_number.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -279,10 +280,25 @@ bool counts_rows(const sheet::Sheet& sheet, const sheet::SheetTable& table, std:
          table.headings[column].unknown_unit.empty();
 }
 
+bool numbers_positions(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
+  constexpr std::size_t kFewest = 3;  // fewer numbers agree by chance
+  std::set<double> different;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    if (sheet::is_blank(sheet.rows[row])) continue;
+    const auto value = sheet::number_at(sheet, row, column);
+    if (!value || sheet::decimals_of(sheet.rows[row][column], sheet.decimal_comma) > 0) return false;
+    different.insert(*value);
+  }
+  return different.size() >= kFewest && *different.begin() == 1 &&
+         *different.rbegin() == static_cast<double>(different.size()) &&
+         table.headings[column].unit.empty() && table.headings[column].unknown_unit.empty();
+}
+
 std::string option_of_positions(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                                 const std::vector<SheetColumn>& columns, const Guess& guess,
                                 std::size_t deviation) {
   std::optional<std::size_t> nearest, sized;
+  bool numbered = false;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words || guess.is_axis(column.name)) continue;
@@ -292,11 +308,15 @@ std::string option_of_positions(const sheet::Sheet& sheet, const sheet::SheetTab
     });
     const auto unit = column.unit.empty() ? std::nullopt : format::find_unit(column.unit);
     const bool length = unit && (unit->dimension == format::Dimension::kLength || is_angle(column.unit));
-    if (target && !counts_rows(sheet, table, k) && (!nearest || k < deviation)) nearest = k;
+    const bool numbers = target && numbers_positions(sheet, table, k);
+    numbered |= numbers;
+    if (target && !numbers && (!nearest || k < deviation)) nearest = k;
     if (length && k < deviation) sized = k;
   }
   if (!nearest) nearest = sized;
   const std::string axis = axis_to_try(sheet, table);
+  if (!nearest && numbered)
+    return fmt::format("--column \"{}[mm]=HEADING\", after you wrote a column with the positions", axis);
   if (!nearest) return fmt::format("--set \"{}[mm]=0\"", axis);
   return fmt::format("--column \"{}{}={}\"", axis, columns[*nearest].unit.empty() ? "[mm]" : "",
                      table.headings[*nearest].text);

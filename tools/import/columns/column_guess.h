@@ -110,6 +110,10 @@ std::optional<std::size_t> column_of_positions(const sheet::SheetTable& table);
 /// True if a column has no unit, and its values are 1, 2, 3 … from row to row: the number of the row.
 bool counts_rows(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column);
 
+/// True if a column has no unit and no other values than the whole numbers 1 to n, each in any number of
+/// rows: the numbers of positions.
+bool numbers_positions(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column);
+
 /// Returns the option that makes a column the positions of the axis X for a deviation whose axis is not
 /// known: --column "X=Pos 1 [mm]". The nearest column to the left of the deviation has its positions, first
 /// of the columns with a word for a position that do not count the rows, then of the columns in a unit of

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/import/columns/column_signs.h"
 
-#include <fmt/format.h>
-
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -10,9 +8,9 @@
 
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/words/sign_words.h"
+#include "tools/import/words/table_texts.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/numbers.h"
-#include "tools/text/words.h"
 
 namespace vernier::importer {
 namespace {
@@ -29,38 +27,11 @@ struct SignText {
   }
 };
 
-/// The cell with a blank behind it if it is only a label ("Vorzeichen:") of the next cell; empty otherwise.
-std::string label_of_sign(const std::string& cell) {
-  const std::vector<std::string> words = text::words_in(text::in_small_letters(cell), " \t:");
-  const bool alone = words.size() == 1 && (words[0].starts_with("vorzeichen") || words[0] == "sign");
-  return alone ? cell + " " : "";
-}
-
 /// The sign that the file states outside the headings: in titles, remarks, and cells of words in the rows.
 SignText sign_of_texts(const sheet::Sheet& sheet, const sheet::SheetTable& table, Travel travel) {
   SignText found;
-  const auto look = [&](const std::string& text, std::size_t line) {
-    found.add(sign_said(text, SignPlace::kTitle, travel), line, text);
-  };
-  for (const sheet::Remark& remark : sheet.remarks) look(remark.text, remark.line);
-  const std::size_t headings = table.upper_row ? *table.upper_row : table.heading_row;
-  for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
-    if (table.has_headings && row >= headings && row < table.first_data) continue;
-    std::string label;
-    for (const std::string& cell : sheet.rows[row]) {
-      if (cell.size() <= 4 || sheet::plain_number(cell, sheet.decimal_comma)) continue;
-      look(label + cell, sheet.line[row]);
-      label = label_of_sign(cell);
-    }
-  }
-  // A cover sheet is about all sheets of the workbook; another table states its own sign.
-  std::string label;
-  for (const sheet::TextElsewhere& other : sheet.elsewhere) {
-    if (other.table) continue;
-    found.add(sign_said(label + other.text, SignPlace::kTitle, travel), 0,
-              fmt::format("sheet {}: {}", other.sheet, label + other.text));
-    label = label_of_sign(other.text);
-  }
+  for (const TableText& one : texts_about(sheet, table))
+    found.add(sign_said(one.text, SignPlace::kTitle, travel), one.line, one.quoted());
   return found;
 }
 

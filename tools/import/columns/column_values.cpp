@@ -14,6 +14,7 @@
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/import/columns/column_guess.h"
+#include "tools/import/columns/values_beside.h"
 #include "tools/maths/median.h"
 #include "tools/sheet/sheet.h"
 
@@ -194,6 +195,11 @@ void settle_reading(const sheet::Sheet& sheet, const sheet::SheetTable& table,
     });
     constexpr std::size_t kEnough = 3;  // fewer rows show nothing
     if (!alone || pairs.target.size() < kEnough) return;
+    const ColumnPair pair{target, k, columns[target].unit, column.unit};
+    if (const std::string work = work_before_reading(sheet, table, values_beside(sheet, table, pair), pair);
+        !work.empty())
+      throw text::InputError(place, heading.text,
+                             fmt::format("the values are not the positions of {}: {}", axis, work));
     throw text::InputError(
         place, heading.text,
         fmt::format("the values are neither positions of {} nor small deviations from them; state the "

@@ -15,6 +15,7 @@
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/title_units.h"
 #include "tools/sheet/sheet_number.h"
+#include "tools/sheet/unit_factor.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
@@ -221,6 +222,25 @@ class Maker {
     throw text::InputError(heading(), table_.headings[k].text, "no row has a distance: fill in this column");
   }
 
+  /// A heading may state a part of a unit alone: "Abweichung (1/100)".
+  [[noreturn]] void refuse_small_without_unit(std::size_t k) const {
+    const std::string& text = table_.headings[k].text;
+    std::string unit;
+    for (std::size_t from = text.find_first_of("([ "); from != std::string::npos && unit.empty();
+         from = text.find_first_of("([ ", from + 1))
+      if (const auto factor = sheet::factor_behind(text.substr(from)); factor && factor->value > 0)
+        unit = sheet::unit_times(factor->value, "mm").value_or("");
+    if (!unit.empty())
+      throw text::InputError(
+          heading(), text,
+          fmt::format("this column states a part of a unit, but no unit: if one unit is {}, give --column "
+                      "\"{}[{}]={}\"",
+                      unit, columns_[k].name, unit, text));
+    throw text::InputError(heading(), text,
+                           fmt::format("this column has no unit: give --unit mm, or --column \"{}[mm]={}\"",
+                                       columns_[k].name, text));
+  }
+
   std::size_t at(const std::string& name) const {
     return static_cast<std::size_t>(std::find(result_.points.begin(), result_.points.end(), name) -
                                     result_.points.begin());
@@ -247,11 +267,7 @@ class Maker {
       const bool small = is_role(k, kDeviationName) || is_role(k, columns::kUncertainty);
       if (!small || !column.unit.empty()) continue;
       column.unit = !wishes_.unit.empty() ? wishes_.unit : titles.deviations.unit;
-      if (column.unit.empty())
-        throw text::InputError(
-            heading(), table_.headings[k].text,
-            fmt::format("this column has no unit: give --unit mm, or --column \"{}[mm]={}\"", column.name,
-                        table_.headings[k].text));
+      if (column.unit.empty()) refuse_small_without_unit(k);
     }
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       if (columns_[k].use != SheetColumn::Use::kColumn || columns_[k].unit.empty() || columns_[k].words)
@@ -342,6 +358,29 @@ class Maker {
                        found.size() > 1 ? "; only one of these is right, look at the part" : "");
   }
 
+  /// Refuses distances that all agree with the stated points in another unit than that of their headings.
+  void refuse_other_unit() const {
+    static constexpr std::array<const char*, 5> kUnits = {"cm", "in", "m", "um", "mm"};
+    for (const char* const unit : kUnits) {
+      std::size_t column = 0;
+      const bool agree = std::all_of(distances_.begin(), distances_.end(), [&](const Distance& one) {
+        const SheetColumn& of = columns_[one.column];
+        column = one.column;
+        const double factor = of.unit.empty() ? 1 : format::find_unit(of.unit)->factor;
+        const double apart = apart_mm(one.from, one.to),
+                     other = one.mm / factor * format::find_unit(unit)->factor;
+        return !is_role(one.column, kDeviationName) &&
+               std::abs(other - apart) <= std::max(kLeast_mm, kShare * apart);
+      });
+      if (!agree || distances_.empty() || columns_[column].unit == unit) continue;
+      throw text::InputError(
+          heading(), table_.headings[column].text,
+          fmt::format("the distances do not agree with the stated points in {}, and all of them agree in {}: "
+                      "correct the unit in the headings ([{}]), or the positions of the points",
+                      columns_[column].unit, unit, unit));
+    }
+  }
+
   void compare() const {
     const auto bad = [&](const Distance& one) {
       const double apart = apart_mm(one.from, one.to);
@@ -352,6 +391,20 @@ class Maker {
     if (worst == distances_.end()) worst = std::find_if(distances_.begin(), distances_.end(), bad);
     if (worst == distances_.end()) return;
     const double apart = apart_mm(worst->from, worst->to);
+    refuse_other_unit();
+    const bool read_well =
+        worst->nominal && std::any_of(distances_.begin(), distances_.end(), [&](const auto& one) {
+          return one.row == worst->row && !one.nominal && !bad(one);
+        });
+    if (read_well)
+      throw text::InputError(
+          place(worst->row), sheet_.rows[worst->row][worst->column],
+          fmt::format(
+              "the nominal distance of {0} and {1} is {2} mm, and the stated points are {3} mm apart "
+              "(permitted difference: {4:.3g} mm, --tolerance); the measured distance of this row agrees "
+              "with the points: correct the nominal distance, or leave out this column (--leave \"{5}\")",
+              result_.points[worst->from], result_.points[worst->to], text::fixed_text(worst->mm, 3),
+              text::fixed_text(apart, 3), limit_mm(*worst, apart), table_.headings[worst->column].text));
     throw text::InputError(
         place(worst->row), sheet_.rows[worst->row][worst->column],
         fmt::format("the {} distance of {} and {} is {} mm, and the stated points are {} mm apart (permitted "
@@ -408,11 +461,55 @@ class Maker {
       result_.notes.push_back(
           "no standard uncertainty of the distances: a fit beside other readings needs it; state that of the "
           "caliper, for example --set \"u[mm]=0.02\"");
+    note_apart(measured);
     std::string repeated;
     if (measured.size() > pairs_of(measured))
       repeated = fmt::format(", {} of them repeated", measured.size() - pairs_of(measured));
     result_.notes.push_back(fmt::format("{} measured distances between {} points{}: a row for each",
                                         measured.size(), point_.size(), repeated));
+  }
+
+  /// The standard uncertainty of the readings in mm that an option or a column states; 0: none.
+  double stated_u_mm() const {
+    for (const MappedColumn& constant : wishes_.constants)
+      if (constant.name == columns::kUncertainty)
+        if (const auto value = text::parse_number(constant.constant)) {
+          const auto unit = format::find_unit(constant.unit);
+          return *value * (unit ? unit->factor : 1);
+        }
+    double most = 0;
+    for (std::size_t k = 0; k < columns_.size(); ++k)
+      for (std::size_t row = table_.first_data; is_role(k, columns::kUncertainty) && row < sheet_.rows.size();
+           ++row)
+        if (const auto number = sheet::number_at(sheet_, row, k)) most = std::max(most, mm(k, *number));
+    return most;
+  }
+
+  /// Notes readings of one distance that differ by more than the repeatability limit: 2.8 standard deviations
+  /// for two readings (ISO 5725-6:1994, 4.1.4), by the stated uncertainty. Without one, calipers: the limit
+  /// is twice the largest permissible error of a caliper with a digit step of 0.05 mm (0.05 mm, DIN 862).
+  void note_apart(const std::vector<const Distance*>& measured) {
+    constexpr double kRepeatability = 2.8;  // standard deviations
+    constexpr double kCaliper_mm = 0.1;     // twice 0.05 mm
+    std::map<std::pair<std::size_t, std::size_t>, std::vector<const Distance*>> same;
+    for (const Distance* const one : measured)
+      same[{std::min(one->from, one->to), std::max(one->from, one->to)}].push_back(one);
+    const double u_mm = stated_u_mm(), limit_mm = u_mm > 0 ? kRepeatability * u_mm : kCaliper_mm;
+    for (const auto& [pair, readings] : same) {
+      const auto [least, most] = std::minmax_element(
+          readings.begin(), readings.end(), [](const auto* a, const auto* b) { return a->mm < b->mm; });
+      const double apart = (*most)->mm - (*least)->mm;
+      if (!(apart > limit_mm)) continue;
+      const std::string source = u_mm > 0 ? fmt::format("{:.3g} mm for u = {:.3g} mm", limit_mm, u_mm)
+                                          : fmt::format("{:g} mm for two readings of a caliper", limit_mm);
+      result_.notes.push_back(
+          fmt::format("the readings of the distance of {} and {} differ by {} mm ({} mm in line {}, {} mm in "
+                      "line {}), more than "
+                      "{}: all of them are used; if one is wrong, delete its row",
+                      result_.points[pair.first], result_.points[pair.second], text::fixed_text(apart, 3),
+                      text::fixed_text((*least)->mm, 3), sheet_.line[(*least)->row],
+                      text::fixed_text((*most)->mm, 3), sheet_.line[(*most)->row], source));
+    }
   }
 
   static std::size_t pairs_of(const std::vector<const Distance*>& measured) {

@@ -11,6 +11,7 @@
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/import/reading/sheet_import.h"
+#include "tools/import/words/joint_names.h"
 #include "tools/maths/alignment.h"
 #include "tools/model/chain/chain.h"
 #include "tools/sheet/sheet_number.h"
@@ -35,10 +36,33 @@ struct List {
   text::Place heading() const { return {reading.sheet.file, reading.sheet.line[reading.table.heading_row]}; }
 };
 
+/// Gives the columns of a robot's joints under their usual names (A1, J1, q1) the names of the axes, with a
+/// note, as the import of a table does. `reading`: without these columns it has no axis of the machine.
+void take_joints(SheetReading& reading, const model::Machine& machine) {
+  std::vector<MissingAxis> axes;
+  for (const model::Axis& axis : machine.axes)
+    if (std::none_of(reading.columns.begin(), reading.columns.end(),
+                     [&](const SheetColumn& one) { return one.name == axis.name; }))
+      axes.push_back({axis.name, axis.rotary});
+  std::vector<FreeColumn> columns;
+  std::vector<std::size_t> at;
+  for (std::size_t k = 0; k < reading.columns.size(); ++k) {
+    const SheetColumn& column = reading.columns[k];
+    if (column.use != SheetColumn::Use::kColumn || column.words || machine.find_axis(column.name)) continue;
+    columns.push_back({reading.table.headings[k].text, reading.table.headings[k].name, column.unit});
+    at.push_back(k);
+  }
+  const JointColumns found = joint_columns(axes, columns);
+  if (!found.sure) return;
+  for (const JointColumns::Pair& pair : found.pairs)
+    reading.columns[at[pair.column]].name = axes[pair.axis].name;
+}
+
 List read_list(const std::string& bytes, const std::string& file, const model::Machine& machine) {
   SheetWords words;
   for (const model::Axis& axis : machine.axes) words.axes.push_back(axis.name);
   List list{read_as_sheet(bytes, file, words), {}};
+  take_joints(list.reading, machine);
   const sheet::Sheet& sheet = list.reading.sheet;
   for (std::size_t row = list.reading.table.first_data; row < sheet.rows.size(); ++row)
     if (!sheet::is_blank(sheet.rows[row])) list.rows.push_back(row);

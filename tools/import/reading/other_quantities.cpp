@@ -12,6 +12,8 @@
 
 #include "tools/format/columns.h"
 #include "tools/import/words/sheet_words.h"
+#include "tools/import/words/stated_directions.h"
+#include "tools/import/words/table_texts.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/words.h"
 
@@ -25,67 +27,33 @@ bool begins_with_one_of(const std::string& word, std::initializer_list<std::stri
                      [&](std::string_view start) { return word.starts_with(start); });
 }
 
-/// True for "previous target", "vorigen Position", "Vorposition": the position before.
-bool names_position_before(const std::vector<std::string>& words) {
-  static const WordSet kPlaces = {"position", "target",  "point",        "station",      "step",
-                                  "value",    "schritt", "zielpunkt",    "punkt",        "messpunkt",
-                                  "stelle",   "reading", "sollposition", "zielposition", "wert"};
-  for (std::size_t k = 0; k < words.size(); ++k) {
-    if (begins_with_one_of(words[k], {"vorposition", "vorgängerposition", "vorpunkt"})) return true;
-    const bool before = begins_with_one_of(
-        words[k], {"previous", "preceding", "vorig", "vorherig", "vorangehend", "vorhergehend", "letzten"});
-    if (before && k + 1 < words.size() && kPlaces.contains(words[k + 1])) return true;
-  }
-  return false;
-}
-
-/// True for the heading of deviations that are increments. "Increment" in a title is often the step of the
-/// positions, and an increment of an encoder.
-bool states_increments(const std::string& text, bool heading) {
-  const std::vector<std::string> words = plain_words(text);
-  if (names_position_before(words)) return true;
-  for (std::size_t k = 0; k < words.size(); ++k) {
-    if (begins_with_one_of(words[k], {"schrittfehler", "schrittabweichung"})) return true;
-    if (!heading) continue;
-    if (begins_with_one_of(words[k], {"incremental", "increment", "inkrement"})) return true;
-    const std::string next = k + 1 < words.size() ? words[k + 1] : "";
-    if (words[k] == "per" && (next == "pitch" || next == "step")) return true;
-    if (words[k] == "je" && (next == "schritt" || next == "steigung" || next == "teilung")) return true;
-  }
-  return false;
-}
-
-/// The text that states increments, and its line; empty: none.
-text::Place place_of_title(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::string& found) {
-  const std::size_t end = table.upper_row ? *table.upper_row : table.heading_row;
-  for (std::size_t row = 0; table.has_headings && row < end; ++row)
-    for (const std::string& cell : sheet.rows[row])
-      if (!cell.empty() && states_increments(cell, false)) {
-        found = cell;
-        return {sheet.file, sheet.line[row]};
-      }
-  for (const sheet::Remark& remark : sheet.remarks)
-    if (states_increments(remark.text, false)) {
-      found = remark.text;
-      return {sheet.file, remark.line};
-    }
+/// The first text about a table that states increments; empty: none.
+TableText text_of_increments(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  for (TableText& one : texts_about(sheet, table))
+    if (states_increments(one.text, false)) return std::move(one);
   return {};
 }
 
-void doubt_increments(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+void doubt_increments(sheet::Sheet& sheet, const sheet::SheetTable& table,
                       std::vector<SheetColumn>& columns) {
-  std::string title;
-  const text::Place place = place_of_title(sheet, table, title);
+  const TableText title = text_of_increments(sheet, table);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     SheetColumn& column = columns[k];
-    if (column.use != SheetColumn::Use::kDeviation || column.why == "as given" ||
-        column.why == "by the profile" || !column.doubt.empty())
-      continue;
+    if (column.use != SheetColumn::Use::kDeviation || !column.doubt.empty()) continue;
     const std::string& heading = table.headings[k].text;
     const bool own = states_increments(table.headings[k].name, true);
-    if (!own && title.empty()) continue;
-    column.doubt_place = own ? text::Place{sheet.file, sheet.line[table.heading_row]} : place;
-    column.doubt_word = own ? heading : title;
+    if (!own && title.text.empty()) continue;
+    const std::string text = own ? heading : title.quoted();
+    if (column.why == "as given" || column.why == "by the profile") {
+      sheet.notes.push_back(
+          fmt::format("the text \"{}\" states increments, each from the position before, and \"{}\" is read "
+                      "as deviations "
+                      "from the target, as given",
+                      text, heading));
+      continue;
+    }
+    column.doubt_place = {sheet.file, own ? sheet.line[table.heading_row] : title.line};
+    column.doubt_word = text;
     column.doubt = fmt::format(
         "by this text the values of \"{0}\" are increments, each from the position before, and a measurement "
         "file has deviations from the target: replace each value in the file by the sum of the values up to "

@@ -9,6 +9,9 @@
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/import/columns/column_guess.h"
+#include "tools/import/columns/signed_positions.h"
+#include "tools/import/columns/stated_order.h"
+#include "tools/import/columns/values_beside.h"
 #include "tools/import/reading/axis_rows.h"
 #include "tools/import/reading/degree_cells.h"
 #include "tools/import/reading/invalid_rows.h"
@@ -26,6 +29,7 @@
 #include "tools/import/sizes/mistyped_cells.h"
 #include "tools/import/sizes/odd_runs.h"
 #include "tools/import/sizes/outlying_cells.h"
+#include "tools/import/sizes/point_rows.h"
 #include "tools/import/sizes/position_sizes.h"
 #include "tools/import/sizes/row_shift.h"
 #include "tools/import/sizes/typed_cells.h"
@@ -38,6 +42,7 @@
 #include "tools/import/words/foreign_letters.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/sign_words.h"
+#include "tools/import/words/table_texts.h"
 #include "tools/import/words/title_units.h"
 #include "tools/sheet/several_tables.h"
 #include "tools/sheet/sheet_number.h"
@@ -230,9 +235,13 @@ void judge_sizes(SheetReading& reading) {
   note_decimal_parts(reading.sheet, reading.table, sized);
   std::vector<SizeDoubt> doubts = judge_angle_units(reading.sheet, reading.table, sized);
   remove_whole_turns(reading.sheet, reading.table, sized);
+  for (SizeDoubt& doubt : judge_raw_readings(reading.sheet, reading.table, sized))
+    doubts.push_back(std::move(doubt));
   for (SizeDoubt& doubt : judge_small_motions(reading.sheet, reading.table, sized))
     doubts.push_back(std::move(doubt));
   for (SizeDoubt& doubt : judge_row_shift(reading.sheet, reading.table, sized))
+    doubts.push_back(std::move(doubt));
+  for (SizeDoubt& doubt : judge_points(reading.sheet, reading.table, sized))
     doubts.push_back(std::move(doubt));
   for (SizeDoubt& doubt : judge_measured_positions(reading.sheet, reading.table, sized))
     doubts.push_back(std::move(doubt));
@@ -343,8 +352,10 @@ void refuse_points(const SheetWords& words, const SheetReading& reading) {
   throw text::InputError(
       {reading.sheet.file, reading.sheet.line[reading.table.heading_row]},
       words.points.list.empty() ? "--point" : "--nominal",
-      "the table has no column with pairs of points (AB, A-B, P1-P2), and its rows are not "
-      "distances between named points: correct the names, or omit this option");
+      "the table has no column with pairs of points (AB, A-B, P1-P2): if it has distances between named "
+      "points, write one row for each distance, with the names of its two points in one cell and the "
+      "distance "
+      "in the next one (AB; 170.31); if it has none, omit this option");
 }
 
 }  // namespace
@@ -370,6 +381,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
       assigns_axis(words, result.wishes) ? std::nullopt : take_pairs(result.sheet, known);
   sheet::keep_table(result.sheet, result.wishes.format.table);
   const std::vector<RunLine> run_lines = take_run_lines(result.sheet);
+  take_sentences_below_headings(result.sheet);
   result.table = sheet::parts_of_sheet(result.sheet);
   add_run_lines(result.sheet, result.table, run_lines);
   note_foreign_letters(result.sheet, result.table);
@@ -403,6 +415,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
     return result;
   }
   refuse_points(words, result);
+  split_signed_positions(result.sheet, result.table);
   note_order_of_time(result.sheet, result.table);
   apply_sign_column(result.sheet, result.table, named);
   leave_differences(result.sheet, result.table, named);
@@ -420,6 +433,8 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   }
   add_run_of_title(result.sheet, result.table, result.wishes.constants,
                    result.wishes.format.table.has_value() && result.runs == 0);
+  if (result.runs == 0)
+    add_stated_directions(result.sheet, result.table, with_columns(words, result.table, result.wishes));
   for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
   for (const std::string& one : words.deviations) assign_deviation(result.wishes, one);
   for (const std::string& heading : words.fill)

@@ -15,8 +15,9 @@
 #include <vector>
 
 #include "tools/format/units.h"
+#include "tools/import/columns/values_beside.h"
+#include "tools/import/words/joint_names.h"
 #include "tools/import/words/sheet_words.h"
-#include "tools/maths/median.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/words.h"
 
@@ -25,9 +26,6 @@ namespace {
 
 /// Largest error of a machine as a share of its travel (kImplausibleShare in deviation_sizes.cpp).
 constexpr double kErrorShare = 0.05;
-
-/// What the values of a column are, beside the positions of an axis.
-enum class Values { kUnclear, kPositions, kDeviations, kOpposite, kSteps };
 
 /// The axis of a heading with a word for the position that the control shows: "X Anzeige".
 std::string axis_shown(const sheet::Heading& heading, const Guess& guess) {
@@ -38,43 +36,6 @@ std::string axis_shown(const sheet::Heading& heading, const Guess& guess) {
     if (guess.is_axis(word)) axis = word;
   }
   return display ? axis : "";
-}
-
-/// Compares the values of a column with the positions of an axis, row by row. With a unit on one side only
-/// the result is kUnclear.
-Values values_beside(const sheet::Sheet& sheet, const sheet::SheetTable& table,
-                     const std::vector<SheetColumn>& columns, std::size_t position, std::size_t reading) {
-  // Two columns without a unit have the same one if their values agree.
-  const bool no_units = columns[position].unit.empty() && columns[reading].unit.empty();
-  const std::string one = no_units ? "mm" : columns[position].unit,
-                    other = no_units ? "mm" : columns[reading].unit;
-  const auto from = format::find_unit(one), to = format::find_unit(other);
-  if (!from || !to || one.empty() || other.empty() || from->dimension != to->dimension)
-    return Values::kUnclear;
-  std::vector<double> at, value, size, apart, sum, step;
-  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const auto a = sheet::number_at(sheet, row, position), b = sheet::number_at(sheet, row, reading);
-    if (!a || !b) continue;
-    if (!at.empty()) step.push_back(std::abs(*b * to->factor - (*a * from->factor - at.back())));
-    at.push_back(*a * from->factor);
-    value.push_back(*b * to->factor);
-    size.push_back(std::abs(value.back()));
-    apart.push_back(std::abs(value.back() - at.back()));
-    sum.push_back(std::abs(value.back() + at.back()));
-  }
-  constexpr std::size_t kEnough = 4;  // fewer rows show no pattern
-  if (at.size() < kEnough) return Values::kUnclear;
-  const auto [least, most] = std::minmax_element(at.begin(), at.end());
-  const double travel = *most - *least;
-  if (!(travel > 0)) return Values::kUnclear;
-  if (no_units && !(maths::median(apart) < kErrorShare * travel)) return Values::kUnclear;
-  if (!no_units && *std::max_element(size.begin(), size.end()) < kErrorShare * travel)
-    return Values::kDeviations;
-  if (maths::median(apart) < kErrorShare * travel) return Values::kPositions;
-  if (maths::median(sum) < kErrorShare * travel) return Values::kOpposite;
-  // The steps are a part of the travel: they agree within a twentieth of themselves.
-  if (maths::median(step) < kErrorShare * maths::median(size)) return Values::kSteps;
-  return Values::kUnclear;
 }
 
 /// Does a column without a unit count the runs: the numbers 1 to n, each in several rows, in ascending
@@ -236,16 +197,20 @@ std::string point_of_robot(const sheet::SheetTable& table, const std::vector<She
   constexpr std::size_t kFewestCoordinates = 2;  // one coordinate is the position of an axis, beside its runs
   std::string options;
   std::size_t joints = 0, coordinates = 0;
+  std::vector<std::string> names;
+  for (const sheet::Heading& heading : table.headings) names.push_back(heading.name);
+  const bool series = !joint_series(names).empty();
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words) continue;
     const bool length = is_length(column.unit);
     const bool point = column.name == "X" || column.name == "Y" || column.name == "Z";
-    if (point && !length) return "";
+    const bool bare = series && column.unit.empty();  // a log without units
+    if (point && !length && !bare) return "";
     coordinates += point ? 1 : 0;
     if (point)
-      options += fmt::format("{}--column \"{}={}\"", options.empty() ? "" : " ",
-                             text::in_small_letters(column.name), table.headings[k].text);
+      options += fmt::format("{}--column \"{}{}={}\"", options.empty() ? "" : " ",
+                             text::in_small_letters(column.name), bare ? "[mm]" : "", table.headings[k].text);
     else
       joints += !length && !is_known_name(column.name) && !names_counting(table.headings[k]) &&
                         (guess.is_axis(column.name) || column.unit.empty() || is_angle(column.unit))
@@ -254,7 +219,9 @@ std::string point_of_robot(const sheet::SheetTable& table, const std::vector<She
   }
   if (coordinates < kFewestCoordinates) options = options.empty() ? named_triple(table, columns) : "";
   return joints >= kFewestJoints && !options.empty()
-             ? options + " (the point that was measured in the poses of a robot)"
+             ? options +
+                   " (the point that an instrument measured in the poses of a robot; a position that the "
+                   "control shows is computed from the joints, and is no measurement)"
              : "";
 }
 
@@ -387,6 +354,21 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
     if (const auto other = deviation_of_same_name(sheet, table, columns))
       return fmt::format("--deviation \"{}{}={}\"", name, table.headings[*other].unit.empty() ? "[um]" : "",
                          table.headings[*other].text);
+  // Without a heading of positions, the values show which column is the target of another one.
+  const auto pair_of = [&](std::size_t target, std::size_t other) {
+    return ColumnPair{target, other, columns[target].unit, columns[other].unit};
+  };
+  for (std::size_t i = 1; axis == columns.end() && !at_position && i < candidates.size(); ++i) {
+    const std::size_t target = candidates.front(), other = candidates[i];
+    if (values_beside(sheet, table, pair_of(target, other)) == Values::kUnclear) continue;
+    at_position = target;
+    at_reading = other;
+    position = fmt::format("--column \"{}{}={}\" ", name, columns[target].unit.empty() ? "[mm]" : "",
+                           table.headings[target].text);
+    reading = table.headings[other].text;
+    unit = columns[other].unit;
+    correction = false;
+  }
   const bool open_heading = reading.empty();
   if (open_heading) reading = "HEADING";
   std::string which = unit.empty() ? "; [mm] and [um] are examples: state the unit of the values" : "";
@@ -403,24 +385,17 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
   const std::string as_deviation = fmt::format(
       "{}--deviation \"{}{}={}\"", position, name,
       unit.empty() ? (reading_of(name) == text::in_small_letters(name) ? "[um]" : "[arcsec]") : "", reading);
-  const Values values = at_position && at_reading && at_position != at_reading
-                            ? values_beside(sheet, table, columns, *at_position, *at_reading)
-                            : Values::kUnclear;
+  const ColumnPair pair = at_position && at_reading ? pair_of(*at_position, *at_reading) : ColumnPair{};
+  const Values values = pair.position != pair.reading ? values_beside(sheet, table, pair) : Values::kUnclear;
   switch (values) {
     case Values::kDeviations:
       return fmt::format("{} (the values are small compared with the positions: deviations)", as_deviation);
     case Values::kPositions:
       return fmt::format("{} (the values follow the positions)", as_position);
     case Values::kOpposite:
-      return fmt::format(
-          "{}, but first change the sign of \"{}\" in the file: its values are the positions with "
-          "the opposite sign",
-          as_position, reading);
+    case Values::kFalling:
     case Values::kSteps:
-      return fmt::format(
-          "{}, but first replace the values of \"{}\" in the file by their sums from the first row "
-          "to each row: the values are the steps from row to row",
-          as_position, reading);
+      return fmt::format("{}, but {}", as_position, work_before_reading(sheet, table, values, pair));
     case Values::kUnclear:
       break;
   }

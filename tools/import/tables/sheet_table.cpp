@@ -13,6 +13,7 @@
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/columns/column_values.h"
 #include "tools/import/columns/sheet_columns.h"
+#include "tools/import/columns/values_beside.h"
 #include "tools/import/tables/assignments_to_try.h"
 #include "tools/import/tables/order_directions.h"
 #include "tools/import/tables/run_pairs.h"
@@ -116,10 +117,19 @@ void check_quantity(const SheetColumn& column, const Guess& guess, const std::st
   for (const format::Dimension one : allowed)
     needs += (needs.empty() ? "" : " or ") + std::string(format::base_unit(one));
   const bool pure = needs.empty();
-  throw text::InputError(place, heading,
-                         fmt::format("[{}] is no unit of {}{}, which needs {}", column.unit,
-                                     column.use == SheetColumn::Use::kDeviation ? "a deviation of " : "",
-                                     column.name, pure ? "a pure number" : "a unit like " + needs));
+  const bool deviation = column.use == SheetColumn::Use::kDeviation;
+  const bool slope = deviation && column.unit == "um/m";
+  throw text::InputError(
+      place, heading,
+      fmt::format(
+          "[{}] is no unit of {}{}, which needs {}{}", column.unit, deviation ? "a deviation of " : "",
+          column.name, pure ? "a pure number" : "a unit like " + needs,
+          slope ? "; if the values are deviations for each metre of travel, multiply each of "
+                  "them in the file by its distance from the first position in m, and write "
+                  "[um]; if they are slopes of a level, they are angles: write [urad] in the heading "
+                  "(1 um/m is 1 urad), and give --column \"ry=HEADING\" with the new heading, and rx, "
+                  "ry or rz for the axis of the rotation"
+                : ""));
 }
 
 /// Approach directions as numbers: 1 and -1, 0 without motion. In the heading of a user who counts 1 and 0,
@@ -251,6 +261,10 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
   std::string without, doubt;
   bool other_than_deviation = false;  // one unit for all would decide the unit of the deviations as well
   Words units;                        // suggested for the columns without one
+  // Deviations in parts of an inch: the positions are in inches.
+  const bool inches = std::any_of(columns.begin(), columns.end(), [](const SheetColumn& one) {
+    return one.unit == "in" || one.unit == "thou" || one.unit == "uin" || one.unit == "0.0001in";
+  });
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     const bool geometry = guess.is_axis(column.name) ||
@@ -269,8 +283,10 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
                       format::known_units()));
     refuse_units_in_cells(sheet, table, k);
     const double largest = largest_value(sheet, table, k);
-    const std::string unit =
-        deviation ? unit_of_deviation(columns, column.name, largest) : unit_to_say(column.name, columns);
+    const std::string unit = deviation ? unit_of_deviation(columns, column.name, largest)
+                             : inches && !is_angle(unit_to_say(column.name, columns))
+                                 ? "in"
+                                 : unit_to_say(column.name, columns);
     if (deviation) doubt += unit_doubt(column, table.headings[k].text, unit, largest);
     other_than_deviation |= !deviation;
     units.insert(unit);
@@ -292,6 +308,17 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
       heading, "",
       fmt::format("no unit: give it for {}each, such as{}{}",
                   one ? fmt::format("all (--unit {}) or for ", *units.begin()) : "", without, doubt));
+}
+
+/// Refuses positions without a unit whose values are their numbers: "Position" with 1, 2, 3.
+void refuse_numbers_of_positions(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                 const std::vector<SheetColumn>& columns, const Guess& guess) {
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (columns[k].use == SheetColumn::Use::kColumn && guess.is_axis(columns[k].name) &&
+        columns[k].unit.empty() && Guess::bare(table.headings[k].name) == Guess::Bare::kTarget &&
+        numbers_positions(sheet, table, k))
+      throw text::InputError({sheet.file, sheet.line[table.heading_row]}, table.headings[k].text,
+                             text_of_numbered_positions(table.headings[k]));
 }
 
 /// Refuses a column that was left out because its cells are no numbers, although its heading says what it is:
@@ -416,6 +443,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   refuse_unclear_signs(columns);
   refuse_magnitudes(sheet, table, columns);
   refuse_doubtful(columns);
+  refuse_numbers_of_positions(sheet, table, columns, guess);
   refuse_without_units(sheet, table, columns, readings, guess);
   if (const std::string empty = measured ? "" : empty_readings(table, columns); !empty.empty())
     throw text::InputError(
@@ -436,6 +464,15 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
       return column.use == SheetColumn::Use::kDeviation ||
              (!column.name.empty() && format::find_column(column.name) != nullptr && wants_unit(column));
     });
+  }
+  if (!measured) {
+    std::vector<std::string> units;
+    for (const SheetColumn& column : columns) units.push_back(column.unit);
+    if (const std::string why = no_assignment(sheet, table, units); !why.empty())
+      throw text::InputError(
+          heading, "",
+          fmt::format("no column of the table is a reading: {}; --preview shows the meaning of each column",
+                      why));
   }
   if (!measured)
     throw text::InputError(

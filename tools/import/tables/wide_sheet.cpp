@@ -12,11 +12,12 @@
 #include <vector>
 
 #include "tools/import/columns/column_guess.h"
-#include "tools/import/tables/run_columns.h"
+#include "tools/import/columns/stated_order.h"
 #include "tools/import/tables/run_pairs.h"
 #include "tools/import/tables/run_positions.h"
 #include "tools/import/tables/run_signs.h"
 #include "tools/import/tables/run_units.h"
+#include "tools/import/words/run_columns.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/title_units.h"
 #include "tools/text/error.h"
@@ -206,6 +207,51 @@ void take_positions_out(std::vector<RunColumn>& runs, std::vector<std::size_t>& 
   std::sort(others.begin(), others.end());
 }
 
+/// "X hin" and "X rück" are positions if other columns have the readings of both directions: "Abw hin", "Abw
+/// rück".
+void take_directed_positions_out(const sheet::SheetTable& table, std::vector<RunColumn>& runs,
+                                 std::vector<std::size_t>& others) {
+  const auto bare = [&](const RunColumn& one) {
+    return !one.axis.empty() && one.run.empty() && !one.deviation && !one.measured && one.sense != 0 &&
+           position_of_direction(table.headings[one.column]).first != 0;
+  };
+  std::set<int> of_positions, of_readings;
+  std::size_t positions = 0;
+  for (const RunColumn& one : runs) {
+    (bare(one) ? of_positions : of_readings).insert(one.sense);
+    positions += bare(one) ? 1 : 0;
+  }
+  constexpr std::size_t kBoth = 2;  // directions
+  if (of_positions.size() != kBoth || of_readings.size() != kBoth || positions != kBoth) return;
+  for (const RunColumn& one : runs)
+    if (bare(one)) others.push_back(one.column);
+  std::erase_if(runs, bare);
+  std::sort(others.begin(), others.end());
+}
+
+/// Headings that are the numbers 1 to n without a word or a unit, behind another column: runs.
+void take_numbered_columns(const sheet::SheetTable& table, std::vector<RunColumn>& runs,
+                           std::vector<std::size_t>& others) {
+  if (!runs.empty()) return;
+  std::vector<RunColumn> numbered;
+  for (const std::size_t k : others) {
+    const sheet::Heading& heading = table.headings[k];
+    if (k == 0 || heading.name != std::to_string(numbered.size() + 1) || !heading.unknown_unit.empty())
+      continue;
+    RunColumn one;
+    one.column = k;
+    one.run = heading.name;
+    one.unit = heading.unit;
+    numbered.push_back(std::move(one));
+  }
+  constexpr std::size_t kFewest = 2;  // one number may be the name of a column
+  if (numbered.size() < kFewest || numbered.size() + 1 < others.size()) return;
+  runs = std::move(numbered);
+  std::erase_if(others, [&](std::size_t k) {
+    return std::any_of(runs.begin(), runs.end(), [&](const RunColumn& one) { return one.column == k; });
+  });
+}
+
 /// Notes a run whose first reading alone is empty: the first sign of a column that is shifted by a row and
 /// cut off at the end.
 void note_late_run(sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
@@ -245,15 +291,19 @@ std::size_t unfold_runs(sheet::Sheet& sheet, sheet::SheetTable& table, const She
     }
   }
   take_positions_out(runs, others);
+  take_directed_positions_out(table, runs, others);
+  take_numbered_columns(table, runs, others);
   if (!others.empty() && !runs.empty()) settle_run_units(sheet, table, runs);
   if (others.empty() || !belong_together(runs)) return 0;
   const std::map<int, std::size_t> positions = positions_by_direction(sheet, table, others);
   number_runs(sheet, table, runs);
+  take_stated_directions(sheet, table, wishes, runs);
   // The two directions of an axis may have opposite values: only runs of one direction are compared.
   std::map<int, std::vector<std::size_t>> of_direction;
   for (const RunColumn& one : runs) of_direction[one.sense].push_back(one.column);
   for (const auto& [sense, columns] : of_direction) note_unsigned_runs(sheet, table, columns);
   const std::size_t position = positions_of_runs(sheet, table, others, wishes);
+  if (positions.empty()) turn_runs_back(sheet, table, runs, position);
   settle_decreasing_positions(sheet, table, runs, position, !positions.empty());
   constexpr std::size_t kMostCells = 8u << 20;  // 64 MB of numbers
   const std::size_t width = others.size() + 3, data = sheet.rows.size() - table.first_data;

@@ -483,6 +483,47 @@ SignSaid sign_of_size(std::string_view text) {
   return said;
 }
 
+/// "Messuhr läuft entgegen der Achse": the readings of an instrument that counts against the axis are nominal
+/// - actual. A text about a turned instrument without a word for the axis is kUnclear.
+SignSaid sign_of_mounting(std::string_view text) {
+  static const WordSet kAgainst = {"entgegen", "entgegengesetzt", "gegen", "against", "opposite"},
+                       kOpposed = {"entgegen",  "entgegengesetzt", "gegenläufig", "gegensinnig",
+                                   "umgekehrt", "verkehrt",        "inverted",    "inverse",
+                                   "reversed",  "invertiert",      "umgedreht",   "opposite",
+                                   "opposed",   "seitenverkehrt"},
+                       kBackward = {"rückwärts", "rueckwaerts", "backwards", "backward"},
+                       kMotions = {"läuft",  "laeuft", "zählt", "zaehlt", "dreht",    "geht",
+                                   "counts", "runs",   "turns", "reads",  "counting", "moves"};
+  const auto instrument = [](const std::string& word) {
+    static const WordSet kWords = {"uhr",      "taster",    "anzeige",    "display", "readout",    "gauge",
+                                   "gage",     "dial",      "sensor",     "probe",   "instrument", "reading",
+                                   "readings", "messgerät", "messgeraet", "fühler",  "dti"};
+    return kWords.contains(word) || word.starts_with("messuhr") || word.ends_with("taster") ||
+           word.ends_with("indicator") || word.starts_with("fühlhebel");
+  };
+  const auto of_axis = [](const std::string& word) {
+    static const WordSet kWords = {
+        "achse",     "achsrichtung", "axis",           "verfahrrichtung", "bewegung",         "motion",
+        "direction", "travel",       "maschinenachse", "achsbewegung",    "bewegungsrichtung"};
+    return kWords.contains(word) || word.ends_with("-achse") || word.ends_with("-axis");
+  };
+  const std::vector<std::string> words = words_about_size(text);
+  const auto any = [&](const WordSet& list) {
+    return std::any_of(words.begin(), words.end(), [&](const auto& word) { return list.contains(word); });
+  };
+  if (std::none_of(words.begin(), words.end(), instrument)) return SignSaid::kNothing;
+  // Words up to that of the axis: "opposite to the positive axis", "gegen die Achse".
+  constexpr std::size_t kBetween = 4, kBetweenShort = 2;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (!kAgainst.contains(words[k])) continue;
+    const bool many_meanings = words[k] == "gegen" || words[k] == "against";  // "gegen Anschlag"
+    const std::size_t end = std::min(words.size(), k + 1 + (many_meanings ? kBetweenShort : kBetween));
+    for (std::size_t next = k + 1; next < end; ++next)
+      if (of_axis(words[next])) return is_negated(words) ? SignSaid::kUnclear : SignSaid::kNominalLessActual;
+  }
+  return any(kOpposed) || (any(kBackward) && any(kMotions)) ? SignSaid::kUnclear : SignSaid::kNothing;
+}
+
 /// The sign of a text about a length, for positions on this side of zero.
 SignSaid on_side(SignSaid said, Travel travel) {
   if (said == SignSaid::kNothing || said == SignSaid::kUnclear || travel == Travel::kPositive) return said;
@@ -505,6 +546,7 @@ SignSaid sign_said(std::string_view text, SignPlace place, Travel travel) {
     if (tokens.list()[k].kind == SignKind::kMinus)
       said = both_signs(said, Difference(tokens.list(), k, place).said());
   said = both_signs(said, on_side(sign_of_size(text), travel));
+  if (said == SignSaid::kNothing) said = sign_of_mounting(text);
   if (said != SignSaid::kNothing || !mentions_sign(text)) return said;
   const bool deviation = std::any_of(tokens.list().begin(), tokens.list().end(),
                                      [](const SignToken& one) { return says_deviation(one.word); });

@@ -26,6 +26,7 @@ enum class Travel { kPositive, kNegative, kBothSides };
 /// if the difference follows "=", or has the word "minus" or the sign U+2212; other differences of nominal
 /// and actual in a title are kUnclear. A text about the length of the motion ("positiv, wenn zu kurz")
 /// depends on `travel`: its sign is kUnclear for positions on both sides of zero.
+/// An instrument that counts against the axis ("Messuhr läuft entgegen der Achse") is kNominalLessActual.
 /// A comparison ("positiv, wenn Ist kleiner als Soll") is read if it has one sign, and kUnclear otherwise. A
 /// text about the sign that no rule reads ("Vorzeichen umgekehrt", "Korrektursinn") is kUnclear.
 SignSaid sign_said(std::string_view text, SignPlace place, Travel travel = Travel::kPositive);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/import/tables/run_columns.h"
+#include "tools/import/words/run_columns.h"
 
 #include <algorithm>
 #include <cctype>
@@ -17,7 +17,7 @@ namespace {
 
 enum class Piece { kNone, kNumber, kWord, kSign };
 
-struct Token {
+struct RunToken {
   Piece piece = Piece::kNone;
   std::string text;
   bool glued = false;  // to the piece before it, without a blank or point between
@@ -33,11 +33,11 @@ Piece piece_of(char c) {
 }
 
 /// Numbers, words and signs of a heading.
-std::vector<Token> tokens_of(const std::string& name) {
-  std::vector<Token> tokens;
+std::vector<RunToken> run_tokens_of(const std::string& name) {
+  std::vector<RunToken> tokens;
   bool glued = false;
   for (std::size_t at = 0; at < name.size();) {
-    Token token;
+    RunToken token;
     token.glued = glued;
     for (const std::string_view arrow : kArrows)
       if (name.compare(at, arrow.size(), arrow) == 0) token = {Piece::kSign, std::string(arrow), glued};
@@ -73,7 +73,7 @@ bool marks_run(const std::string& word) {
 }
 
 /// A sign between a word and the next word joins them ("Lauf-1"), else it is a direction.
-bool joins(const std::vector<Token>& tokens, std::size_t k) {
+bool joins(const std::vector<RunToken>& tokens, std::size_t k) {
   if (tokens[k].text != "-" && tokens[k].text != "\u2013") return false;
   const bool behind = k > 0 && tokens[k].glued, before = k + 1 < tokens.size() && tokens[k + 1].glued;
   return behind && before;
@@ -105,11 +105,11 @@ std::optional<RunColumn> run_column(const sheet::Heading& heading) {
     name.erase(open, close - open + 1);
     column.deviation = true;
   }
-  const std::vector<Token> tokens = tokens_of(name);
+  const std::vector<RunToken> tokens = run_tokens_of(name);
   int by_word = 0, by_sign = 0;
   bool said = false;
   for (std::size_t k = 0; k < tokens.size(); ++k) {
-    const Token& token = tokens[k];
+    const RunToken& token = tokens[k];
     const std::string small = text::in_small_letters(token.text);
     if (token.piece == Piece::kNumber) {
       if (!column.run.empty() || token.text.size() > 3) return std::nullopt;
@@ -152,7 +152,9 @@ std::pair<int, sheet::Heading> position_of_direction(const sheet::Heading& headi
   for (const std::string& written : words_with_signs(heading.name)) {
     const std::string small = text::in_small_letters(written);
     const bool of_axis = is_axis_direction(written);
-    if (says_way(small) || of_axis) {
+    const bool rises =
+        !says_target(small) && !is_run_number(small) && sense_said(small) != 0 && small.size() > 2;
+    if (says_way(small) || of_axis || rises) {
       if (sense != 0) return {0, heading};
       sense = sense_said(small);
       if (!of_axis) continue;
