@@ -126,7 +126,8 @@ std::string runs_clause(const Finding& f, const SentenceFacts& facts) {
   std::string names;
   constexpr std::size_t kMostNamed = 3;  // in a sentence
   for (std::size_t i = 0; i < facts.disagreeing.size() && i < kMostNamed; ++i)
-    names += (i > 0 ? ", " : "") + facts.disagreeing[i];
+    names += (i > 0 ? ", " : "") +
+             (facts.disagreeing[i].empty() ? std::string("the rows without a run") : facts.disagreeing[i]);
   if (facts.disagreeing.size() > kMostNamed) names += " ...";
   return fmt::format(", in {} of {} runs (not in {})", f.runs_agreeing, f.runs, names);
 }

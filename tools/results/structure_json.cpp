@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/results/structure_json.h"
+
+#include <fmt/format.h>
+
 #include "tools/format/readings.h"
 #include "tools/text/optional_json.h"
 
@@ -9,6 +12,25 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json name_or_null(const std::string& name) { return name.empty() ? Json(nullptr) : Json(name); }
+
+/// What the absence of a finding means. A residual far above the noise that depends on no column is no noise.
+std::string without_findings(const Json& result, const residual::FailurePicture& picture) {
+  constexpr double kFarAbove = 5;     // of the noise: a wrong u is rarely so wrong
+  constexpr double kNoChance = 1e-3;  // chance of the strongest pattern
+  const auto number = [&](const char* key) {
+    return result.contains(key) && result[key].is_number() ? result[key].get<double>() : 0;
+  };
+  const double rms_um = number("rms_um"), noise_um = number("noise_um");
+  if (noise_um > 0 && rms_um > kFarAbove * noise_um && picture.outliers == 0)
+    return fmt::format(
+        "the residual is {:.3g} times the noise, and no single column explains it: probably the place of the "
+        "reflector or of the tool is not known, the readings are not those of these rows, or u is too small",
+        rms_um / noise_um);
+  if (picture.omnibus_p < kNoChance) return "the residual has structure, but no single column explains it";
+  const bool unknown_noise = rms_um > 0 && noise_um <= 0;
+  return std::string("the residual has no structure beyond chance") +
+         (unknown_noise ? "; u is not stated: whether the residual is small enough is not known" : "");
+}
 
 Json triple(const Eigen::Vector3d& v) { return Json::array({v[0], v[1], v[2]}); }
 
@@ -42,18 +64,20 @@ Json findings_json(const residual::FailurePicture& picture) {
 void add_failure(Json& result, const residual::FailurePicture& picture) {
   result["findings"] = findings_json(picture);
   Json& structure = result["structure"];
-  structure = {{"omnibus_p", picture.omnibus_p},
-               {"omnibus_by", name_or_null(picture.omnibus_by)},
-               {"chi_p", text::or_null(picture.chi_p)},
-               {"pure_error_um", text::or_null(picture.pure_error_um)},
-               {"lack_of_fit_um", text::or_null(picture.lack_of_fit_um)},
-               {"lack_of_fit_p", text::or_null(picture.lack_of_fit_p)},
-               {"repeat_freedom", picture.repeat_freedom},
-               {"neighbour_error_um", text::or_null(picture.neighbour_error_um)},
-               {"tried", picture.tried},
-               {"outliers", picture.outliers},
-               {"shares", Json::array()},
-               {"cells", Json::array()}};
+  structure = {
+      {"omnibus_p", picture.omnibus_p},
+      {"no_findings", picture.findings.empty() ? Json(without_findings(result, picture)) : Json(nullptr)},
+      {"omnibus_by", name_or_null(picture.omnibus_by)},
+      {"chi_p", text::or_null(picture.chi_p)},
+      {"pure_error_um", text::or_null(picture.pure_error_um)},
+      {"lack_of_fit_um", text::or_null(picture.lack_of_fit_um)},
+      {"lack_of_fit_p", text::or_null(picture.lack_of_fit_p)},
+      {"repeat_freedom", picture.repeat_freedom},
+      {"neighbour_error_um", text::or_null(picture.neighbour_error_um)},
+      {"tried", picture.tried},
+      {"outliers", picture.outliers},
+      {"shares", Json::array()},
+      {"cells", Json::array()}};
   for (const residual::ColumnShare& share : picture.shares)
     structure["shares"].push_back({{"observation", share.observation},
                                    {"column", share.column},

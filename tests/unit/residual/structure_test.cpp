@@ -16,6 +16,7 @@
 #include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/parameters.h"
+#include "tools/residual/sentence.h"
 #include "tools/results/structure_json.h"
 
 namespace vernier::structure_test {
@@ -558,6 +559,38 @@ TEST(FailurePicture, JsonHoldsFindingsSharesAndCells) {
   EXPECT_EQ(json["structure"]["cells"].size(), picture.cells.size());
   // Three kinds against 3 axes, 3 senses, feed, t, visit, run, T and 4 decoys.
   EXPECT_EQ(json["structure"]["shares"].size(), 45U);
+}
+
+TEST(FailurePicture, SaysWhatAResidualWithoutFindingsMeans) {
+  FailurePicture picture;
+  picture.omnibus_p = 0.4;
+  const auto words = [&](nlohmann::ordered_json json) {
+    add_failure(json, picture);
+    return json["structure"]["no_findings"].get<std::string>();
+  };
+  EXPECT_EQ(words({{"rms_um", 21.0}, {"noise_um", 20.0}}), "the residual has no structure beyond chance");
+  EXPECT_TRUE(words({{"rms_um", 67800.0}, {"noise_um", 20.0}}).starts_with("the residual is 3.39e+03 times"));
+  EXPECT_NE(words({{"rms_um", 67800.0}, {"noise_um", nullptr}}).find("u is not stated"), std::string::npos);
+  // One gross reading makes a large rms too, and is named as an outlier.
+  picture.outliers = 1;
+  EXPECT_EQ(words({{"rms_um", 200.0}, {"noise_um", 20.0}}), "the residual has no structure beyond chance");
+  picture.outliers = 0;
+  picture.findings.emplace_back();
+  nlohmann::ordered_json json = {{"rms_um", 67800.0}, {"noise_um", 20.0}};
+  add_failure(json, picture);
+  EXPECT_TRUE(json["structure"]["no_findings"].is_null());
+}
+
+TEST(FailurePicture, RowsWithoutARunHaveAName) {
+  Finding finding;
+  finding.observation = "y";
+  finding.column = "Y";
+  finding.runs = 6;
+  finding.runs_agreeing = 5;
+  SentenceFacts facts;
+  facts.disagreeing = {""};
+  EXPECT_NE(sentence_of(finding, facts).find("(not in the rows without a run)"), std::string::npos)
+      << sentence_of(finding, facts);
 }
 
 TEST(FailurePicture, NothingToTestIsNoError) {

@@ -98,9 +98,7 @@ void print_failure(std::FILE* out, const nlohmann::ordered_json& json) {
   const double chance = structure["omnibus_p"].get<double>();
   if (findings.empty()) {
     fmt::print(out, "where the model fails: {} ({} patterns tested, chance of the strongest {:.2g})\n",
-               chance < 1e-3 ? "the residual has structure, but no single column explains it"
-                             : "the residual has no structure beyond chance",
-               structure["tried"].get<std::size_t>(), chance);
+               structure["no_findings"].get<std::string>(), structure["tried"].get<std::size_t>(), chance);
   } else {
     fmt::print(
         out,

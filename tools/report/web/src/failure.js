@@ -9,8 +9,15 @@ const capital = (text) => (text ? text[0].toUpperCase() + text.slice(1) : '');
 const chance = (p) => (p === 0 || p < 1e-12 ? '< 1e−12' : number(p, 2));
 
 /** Sentences first, the strongest on top; each with what it explains. */
-export function findingList(findings) {
-  if (!findings?.length) return el('p', {}, 'No column, pair, run or order of rows explains the residual beyond chance.');
+export function findingList(findings, structure) {
+  if (!findings?.length)
+    return el(
+      'p',
+      {},
+      structure?.no_findings
+        ? `${capital(structure.no_findings)}.`
+        : 'No column, pair, run or order of rows explains the residual beyond chance.',
+    );
   return el(
     'ol',
     { class: 'findings' },
@@ -115,7 +122,7 @@ export function failure(result) {
   const { findings, structure } = result;
   if (!findings && !structure) return [];
   return [
-    findingList(findings),
+    findingList(findings, structure),
     structure ? repeats(structure) : null,
     structure?.shares?.length ? shareTable(structure.shares, findings ?? []) : null,
     structure?.cells?.length ? picture(structure.cells) : null,
