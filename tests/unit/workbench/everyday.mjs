@@ -197,12 +197,29 @@ async function sheetsOfAWorkbook(page) {
   await view(page, 'project');
   await page.drop([{ name: 'three_axes.xlsx', bytes: readFileSync(join(source, 'tests/data/sheets/three_axes.xlsx')) }]);
   await measured(page, 'three_axes_read.csv');
-  await picture(page, 'everyday_sheets', '#other-sheets');
-  await page.click('#other-sheets [data-sheet="Y"]');
+  await picture(page, 'everyday_sheets', '.other-sheets');
+  // Neither a further file nor another table that is read differently takes the sheets away.
+  await page.drop([{ name: 'dial.csv', text: 'X soll;Abweichung X\r\nmm;um\r\n0,00;1,5\r\n100,00;-2,5\r\n200,00;3,0\r\n' }]);
+  await measured(page, 'dial_read.csv');
+  await page.click('[data-file="dial_read.csv"] .differently');
+  await words(page, '#import-box', 'What is in dial.csv?');
+  // A spreadsheet that was imported is no measurement, and is not offered as one.
+  assert.deepEqual(
+    await page.evaluate(
+      "[...document.getElementById('measurement').options].map((one) => one.value).filter((one) => one.startsWith('dial'))",
+    ),
+    ['dial_read.csv'],
+  );
+  await page.evaluate(
+    "[...document.querySelectorAll('[data-of=\"dial.csv\"] button')].find((one) => one.textContent === 'Not now').click()",
+  );
+  await page.choose('#measurement', 'three_axes_read.csv');
+  await measured(page, 'three_axes_read.csv');
+  await page.click('.other-sheets [data-sheet="Y"]');
   await measured(page, 'three_axes_read.csv + three_axes_Y.csv');
-  await page.click('#other-sheets [data-sheet="Z"]');
+  await page.click('.other-sheets [data-sheet="Z"]');
   await measured(page, 'three_axes_read.csv + three_axes_Y.csv + three_axes_Z.csv');
-  assert.equal(await page.evaluate("document.getElementById('other-sheets')"), null, 'no sheet is left');
+  assert.equal(await page.evaluate("document.querySelector('.other-sheets')"), null, 'no sheet is left');
   assert.equal(
     await page.evaluate("document.querySelector('#history li:last-child code').textContent"),
     'vernier import table three_axes.xlsx --sheet Z -o three_axes_Z.csv',
@@ -333,7 +350,39 @@ async function caliper(page) {
   await chosen(page, 'square-fitted.xml');
   // The squareness of the page touch.
   assert.match(readFileSync(join(folder, 'square-fitted.xml'), 'utf8'), /EC0Y value="0\.00120/);
+  await leftOut(page);
 }
+
+/** On a small screen: what a format cannot express stands before the words of success, in sight, and with the last step of the path. */
+async function leftOut(page) {
+  await page.send('Emulation.setDeviceMetricsOverride', { width: 800, height: 600, deviceScaleFactor: 1, mobile: false });
+  await view(page, 'export');
+  await page.choose('#export-format', 'axis-csv');
+  await page.click('#export-options [data-option="leave-out"]');
+  for (const rule of await page.evaluate("[...document.querySelectorAll('#export-options [data-word]')].map((one) => one.dataset.word)"))
+    await page.click(`#export-options [data-word="${rule}"]`);
+  await page.click('#do-export');
+  await words(page, '#left-out', 'position errors');
+  assert.ok(
+    await page.evaluate(
+      "document.getElementById('left-out').compareDocumentPosition(document.querySelector('#export-result .verdict')) & Node.DOCUMENT_POSITION_FOLLOWING",
+    ),
+    'before the words of success',
+  );
+  assert.ok(await inSight(page, '#left-out'), 'in sight');
+  await words(page, '#guide-hint', 'without: errors outside the tables');
+  await picture(page, 'left_out');
+  await page.send('Emulation.setDeviceMetricsOverride', { width: 1280, height: 720, deviceScaleFactor: 1, mobile: false });
+}
+
+/** Is an element in the part of the window that neither the header nor the footer covers? */
+const inSight = (page, selector) =>
+  page.until(
+    `(() => { const one = document.querySelector(${JSON.stringify(selector)}), box = one.getBoundingClientRect();
+      return box.height > 0 && [box.top + 2, box.bottom - 2].every((y) => one.contains(document.elementFromPoint(box.left + 4, y))); })()`,
+    `${selector} in sight`,
+    5,
+  );
 
 /** Waits until a file of the project has a text. */
 async function has(name, part) {
@@ -342,8 +391,25 @@ async function has(name, part) {
   assert.ok(readFileSync(join(folder, name), 'utf8').includes(part), `${name} has ${part}`);
 }
 
+/** A machine that is made after the file was dropped: the question about its other axes is in sight, on a small screen too. */
+async function otherAxes(page) {
+  await page.send('Emulation.setDeviceMetricsOverride', { width: 800, height: 600, deviceScaleFactor: 1, mobile: false });
+  await page.drop([{ name: 'one_axis.csv', text: 'X[mm],x[mm],u[um]\n0,0.001,1\n100,100.002,1\n200,200.004,1\n' }]);
+  await measured(page, 'one_axis.csv');
+  await page.until("document.getElementById('new-machine').open", 'the way to a machine');
+  await page.type('#new-name', 'small');
+  await page.click('#make-machine');
+  await chosen(page, 'small.xml');
+  await words(page, '#stood-room', 'Where did the other axes stand');
+  assert.ok(await inSight(page, '#stood-room h2'), 'in sight');
+  assert.ok(await inSight(page, '#stood-add'), 'its button too');
+  await page.choose('#machine', '');
+  await page.send('Emulation.setDeviceMetricsOverride', { width: 1280, height: 720, deviceScaleFactor: 1, mobile: false });
+}
+
 /** Files that come again, are taken out, or are of no use: nothing ends in silence or in a refusal without a way on. */
 async function again(page) {
+  await otherAxes(page);
   // A table with a wrong number, corrected and dropped again under its name.
   await page.drop([{ name: 'dial.csv', text: 'X[mm],x[mm],u[um]\n0,0.001,1\n100,100.002,1\n200,203.004,1\n' }]);
   await measured(page, 'dial.csv');
@@ -421,7 +487,12 @@ async function robot(page) {
       text: `<robot name="arm"><link name="l0"/>${links}${axes.map((one, k) => joint(k + 1, `l${k}`, `l${k + 1}`, one)).join('')}</robot>`,
     },
   ]);
+  // What is measured is asked before there is a machine file: a reflector has no place in the description of a robot.
+  await words(page, '#drop-error .question', 'A reflector is on the flange at a place that nobody measured');
+  await picture(page, 'robot_measured', '#drop-error');
+  await page.click('#drop-error [data-answer=point]');
   await chosen(page, 'arm.xml');
+  assert.ok(!readFileSync(join(folder, 'arm.xml'), 'utf8').includes('<ToolShift'));
   assert.equal(await page.evaluate('document.querySelector(\'[data-file="arm.urdf"]\').dataset.kind'), 'robot');
   await view(page, 'export');
   await page.choose('#export-format', 'urdf');
@@ -464,7 +535,17 @@ async function unknownTool(page) {
   await measured(page, 'reflector.csv');
   await page.choose('#machine', 'arm.xml');
   await page.until("document.body.dataset.subject === 'yes'", 'the rows');
+  // A residual far above u that depends on no column is no noise: the comparison says so, with the way on.
+  await view(page, 'compare');
+  await words(page, '#view-compare', 'times the noise');
+  await page.until("document.getElementById('compare-reflector')", 'the way to declare the reflector');
   await view(page, 'add');
+  await page.until("!document.getElementById('reflector').hidden", 'the reflector before any fit');
+  await page.click('#reflector');
+  await chosen(page, 'arm-set-fitted.xml');
+  await page.until("document.getElementById('reflector').hidden && document.body.dataset.subject === 'yes'", 'one reflector is enough');
+  await page.choose('#machine', 'arm.xml');
+  await page.until("document.body.dataset.subject === 'yes'", 'the rows');
   await page.click('#fit');
   await words(page, '#fit-notes', 'The tool point of the machine file is probably not that of the measurement');
   assert.ok(!/--free|vernier new/.test(await text(page, '#fit-notes')), await text(page, '#fit-notes'));
@@ -472,8 +553,8 @@ async function unknownTool(page) {
   // Or the reflector is declared: the set-up has its place, and the axes do not correct it.
   await page.click('#fit-reflector');
   await page.until("[...document.querySelectorAll('#history code')].some((one) => one.textContent.includes('--reflector'))", 'set');
-  await chosen(page, 'arm-set-fitted.xml');
-  assert.ok(readFileSync(join(folder, 'arm-set-fitted.xml'), 'utf8').includes('<ToolShift'));
+  await chosen(page, 'arm-set-2-fitted.xml');
+  assert.ok(readFileSync(join(folder, 'arm-set-2-fitted.xml'), 'utf8').includes('<ToolShift'));
   await page.choose('#machine', 'arm.xml');
   await page.until("document.body.dataset.subject === 'yes'", 'the rows');
   await page.click('#fit');
@@ -502,8 +583,10 @@ async function severalEnds(page, arm) {
   // The button in the table of files asks the same.
   await page.click('[data-file="two.urdf"] .use');
   await page.click('#drop-error [data-answer="tool0"]');
+  await page.click('#drop-error [data-answer="reflector"]');
   await chosen(page, 'two.xml');
-  assert.ok((await text(page, '#history')).includes('vernier new robot --urdf two.urdf --tip tool0 -o two.xml'));
+  assert.ok((await text(page, '#history')).includes('vernier new robot --urdf two.urdf --tip tool0 --reflector -o two.xml'));
+  assert.ok(readFileSync(join(folder, 'two.xml'), 'utf8').includes('<ToolShift'));
   assert.equal(await text(page, '#drop-error'), '');
   // A refusal of a drop goes when another panel has made what was refused.
   await page.drop([{ name: 'broken.urdf', text: '<robot' }]);

@@ -170,6 +170,7 @@ async function axesThatStood(page) {
         </robot>`,
     },
   ]);
+  await page.click('#drop-error [data-answer=point]');
   await page.until("document.getElementById('machine').value === 'arm.xml'", 'the machine file of the robot');
   await page.choose('#measurement', rows);
   await page.choose('#machine', machine);

@@ -8,6 +8,7 @@ import { moreOptions } from './options.js';
 import { parameterPanel } from './parameters.js';
 import { redrawAll } from './plot.js';
 import { choose } from './project.js';
+import { declareReflector, kReflector, needsReflector, stemOf } from './reflector.js';
 import { along, compared, loadRows, measured, setResiduals, subject } from './rows.js';
 import { scatter } from './scatter.js';
 import { emit, on, store } from './store.js';
@@ -15,8 +16,6 @@ import { termPanel } from './term.js';
 
 const { steps } = store;
 
-/** A machine's name without what earlier steps have put behind it: model-added-2-fitted.xml is of model. */
-const stem = (machine) => machine.replace(/(-(added|set)(-\d+)?)?(-fitted(-\d+)?)?\.xml$/i, '');
 const unfitted = (machine) => machine.replace(/(-fitted(-\d+)?)?\.xml$/i, '');
 
 function note(label, machine, result) {
@@ -44,14 +43,13 @@ function notesOfFit(machine, label, options, notes) {
   const fit = button('Fit the tool point too', () => guarded(box, () => fitInto(machine, `${label}, with its tool point`, more)), {
     id: 'fit-tool',
   });
-  const reflector = button('The reflector is at another, unknown place', () => guarded(box, declareReflector), { id: 'fit-reflector' });
+  const reflector = button(kReflector, () => guarded(box, withReflector), { id: 'fit-reflector' });
   box.append(el('div', { class: 'controls' }, fit, reflector));
 }
 
-/** The readings are those of a reflector at an unknown place on the tool: a part of the set-up, no error of the machine. */
-export async function declareReflector() {
-  const output = freeName(`${stem(store.machine)}-set`, '.xml');
-  await run({ command: 'set', machine: store.machine, reflector: true, output });
+/** Declares the reflector in a new machine file, and fits it. */
+export async function withReflector() {
+  const output = await declareReflector();
   location.hash = '#add';
   await fitInto(output, 'with a reflector at an unknown place');
 }
@@ -62,7 +60,7 @@ export async function addEffect(effect, error) {
   await guarded(error ?? document.getElementById('add-error'), async () => {
     const before = store.machine;
     if (steps.at(-1)?.machine !== before) await fitInto(before, 'the model, fitted');
-    const output = freeName(`${stem(before)}-added`, '.xml');
+    const output = freeName(`${stemOf(before)}-added`, '.xml');
     const { result } = await run({ command: 'add', effect, machine: store.machine, output });
     await fitInto(output, `+ ${result.said ?? result.label}`);
   });
@@ -174,7 +172,7 @@ function sliderPanel(error) {
     'Keep this value',
     () =>
       guarded(error, async () => {
-        const output = freeName(`${stem(store.machine)}-set`, '.xml');
+        const output = freeName(`${stemOf(store.machine)}-set`, '.xml');
         await run({ command: 'set', machine: store.machine, values: [`${chosen.name}=${now()}`], output });
         const { result } = await run({ command: 'compare', ...compared(), machine: output });
         note(`${chosen.name} by hand`, output, result);
@@ -265,6 +263,15 @@ export function addView(root) {
   );
   const effect = el('input', { type: 'text', class: 'term', 'aria-label': 'effect', placeholder: 'backlash:axis=X', id: 'effect' });
   const add = button('Add and fit', () => addEffect(effect.value.trim(), error), { class: 'quiet', id: 'add-effect', ...needsSubject });
+  const reflector = button(kReflector, () => guarded(error, withReflector), {
+    class: 'quiet',
+    id: 'reflector',
+    hidden: '',
+    title: 'The fit then estimates the place, and does not take it for an error of the machine',
+  });
+  on('parameters', () => {
+    reflector.hidden = !needsReflector();
+  });
   const catalogue = el('div', { id: 'catalogue' });
   const list = button(
     'Catalogue',
@@ -300,7 +307,7 @@ export function addView(root) {
   root.append(
     error,
     el('div', { id: 'fit-notes' }),
-    panel(null, el('div', { class: 'controls' }, fit, improve, effect, add, list), options.element, catalogue),
+    panel(null, el('div', { class: 'controls' }, fit, reflector, improve, effect, add, list), options.element, catalogue),
     stepsPanel(),
     parameterPanel(),
     sliderPanel(error),

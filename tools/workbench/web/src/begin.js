@@ -2,8 +2,9 @@
 import { el } from '../../../report/web/src/dom.js';
 import { freeName, run } from './api.js';
 import { kTypes, machineChoice } from './machines.js';
-import { moreOptions } from './options.js';
+import { moreOptions, option } from './options.js';
 import { button, guarded, panel } from './parts.js';
+import { kReflector } from './reflector.js';
 import { on, store } from './store.js';
 
 /** Makes a machine file and an empty survey: `vernier new`. */
@@ -17,7 +18,8 @@ function newMachine(choose) {
     type = chosen;
     axes.value = usual;
   });
-  const options = moreOptions('new', ['type', 'axis', 'name', 'output', 'measurements']);
+  const options = moreOptions('new', ['type', 'axis', 'name', 'reflector', 'output', 'measurements']);
+  const reflector = el('input', { type: 'checkbox', id: 'new-reflector' });
   const make = button(
     'Make it',
     () =>
@@ -32,6 +34,7 @@ function newMachine(choose) {
           ...(axis.length ? { axis } : {}),
           ...(name.value.trim() ? { name: name.value.trim() } : {}),
           ...options.values(),
+          ...(reflector.checked ? { reflector: true } : {}),
           output,
           measurements: survey,
         });
@@ -48,6 +51,7 @@ function newMachine(choose) {
       { class: 'controls' },
       el('label', { class: 'choice' }, 'axes, with their travel in mm or deg ', axes),
       el('label', { class: 'choice' }, 'name ', name),
+      el('label', { class: 'choice', title: option('new', 'reflector').help }, reflector, ` ${kReflector}`),
       make,
     ),
     options.element,

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { choice, el, tiles } from '../../../report/web/src/dom.js';
 import { number, printed } from '../../../report/web/src/data.js';
+import { withReflector } from './add.js';
 import { getJson, run } from './api.js';
 import { handoverPanel } from './handover.js';
 import { button, gate, guarded, nothingYet, panel, programWords } from './parts.js';
 import { redrawAll } from './plot.js';
 import { polarPlot } from './polar.js';
+import { kReflector, needsReflector } from './reflector.js';
 import { along, chosenLines, compared, lineWords, loadRows } from './rows.js';
 import { pointKey, scatter } from './scatter.js';
 import { histogram, sorted, spreadWords } from './spread.js';
@@ -35,6 +37,8 @@ function figures(result) {
   return box;
 }
 
+const capital = (words) => words[0].toUpperCase() + words.slice(1);
+
 /** What the command added or assumed: set-ups, a noise that no file states. */
 const notes = (result) => (result.notes ?? []).map((one) => el('p', { class: 'note' }, printed(programWords(one))));
 
@@ -51,7 +55,7 @@ function findings(result) {
     );
   return list.length
     ? el('ol', { class: 'findings' }, list)
-    : el('p', { class: 'note' }, 'Nothing beyond chance stands out along any recorded column.');
+    : el('p', { class: 'note', id: 'no-findings' }, printed(`${capital(result.structure.no_findings)}.`));
 }
 
 function matrix() {
@@ -201,6 +205,8 @@ export function compareView(root) {
     store.compare = state.result;
     numbers.replaceChildren(figures(state.result), ...notes(state.result));
     where.replaceChildren(findings(state.result));
+    if (/reflector/.test(state.result.structure.no_findings ?? '') && needsReflector())
+      where.append(button(kReflector, () => guarded(error, withReflector), { class: 'quiet', id: 'compare-reflector' }));
     emit('compared');
   }
   function build() {

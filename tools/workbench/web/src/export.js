@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // For a control without a board: its tables, a corrected part program, and the map of what is left.
 import { el } from '../../../report/web/src/dom.js';
+import { number } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, run } from './api.js';
 import { reportHead } from './handover.js';
 import { optionFields } from './options.js';
@@ -20,11 +21,26 @@ const fileLink = (name) =>
     name,
   );
 
-/** What a command printed, and its files. */
-function outcome(box, { text }, files, words) {
+const um = (one) => (Number.isFinite(one.um) ? ` (up to ${number(one.um, 3)} µm)` : ' (size unknown)');
+
+/** What a command printed, and its files. What the format left out is said with the success, not below it. */
+function outcome(box, { text, result }, files, words) {
+  const left = result?.left_out ?? [];
   // The command names its files too; here they are links.
-  const lines = text.split('\n').filter((line) => line.trim() && !files.includes(line.trim()));
+  const lines = text.split('\n').filter((line) => line.trim() && !files.includes(line.trim()) && !line.startsWith('left out: '));
   box.replaceChildren(
+    left.length
+      ? el(
+          'div',
+          { class: 'error', role: 'alert' },
+          'These errors of the machine are not in the files:',
+          el(
+            'ul',
+            { id: 'left-out' },
+            left.map((one) => el('li', {}, `${one.what}${um(one)}`)),
+          ),
+        )
+      : '',
     el('p', { class: 'verdict', role: 'status' }, words),
     lines.length ? el('pre', { class: 'source wrap' }, lines.join('\n')) : '',
     el(
@@ -33,6 +49,7 @@ function outcome(box, { text }, files, words) {
       files.map((name) => el('li', {}, fileLink(name))),
     ),
   );
+  box.scrollIntoView({ block: 'nearest' });
 }
 
 /** Whenever a machine is chosen or the fields change: why the button cannot be pressed. */
@@ -73,6 +90,7 @@ function controlPanel() {
             `${files.some((name) => /readme/i.test(name)) ? 'README says how the control reads the files. ' : ''}Press a name to save the file.`,
         );
         store.exported = true;
+        store.leftOut = (state.result.left_out ?? []).map((one) => one.what);
         emit('uploaded');
       }),
     { id: 'do-export' },

@@ -101,7 +101,8 @@ export function guide() {
         ),
       ),
     );
-    hint.textContent = next ? next[4]() : store.uploaded ? 'The correction runs.' : 'The files for the control are written.';
+    const written = `The files for the control are written${store.leftOut.length ? `, without: ${store.leftOut.join('; ')}` : ''}.`;
+    hint.textContent = next ? next[4]() : store.uploaded ? 'The correction runs.' : written;
   };
   for (const event of ['project', 'rows', 'compared', 'diagnosed', 'steps', 'safety', 'uploaded', 'view']) on(event, draw);
   draw();

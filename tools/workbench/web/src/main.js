@@ -16,6 +16,7 @@ import { redrawAll } from './plot.js';
 import { choose, projectView } from './project.js';
 import { fileNames } from './options.js';
 import { emit, on, store } from './store.js';
+import { measurementFiles } from './uses.js';
 
 const kViews = [
   ['project', 'Project', projectView],
@@ -48,8 +49,7 @@ function show(id) {
 function subjectBar() {
   const machine = el('select', { id: 'machine', 'aria-label': 'machine' }),
     rows = el('select', { id: 'measurement', 'aria-label': 'measurement' });
-  const fill = (select, kind, chosen) => {
-    const names = store.files.filter((file) => file.kind === kind).map((file) => file.name);
+  const fill = (select, kind, names, chosen) => {
     if (chosen && !names.includes(chosen)) names.push(chosen);
     select.replaceChildren(
       el('option', { value: '' }, `choose a ${kind}`),
@@ -57,9 +57,14 @@ function subjectBar() {
     );
     select.title = chosen ?? '';
   };
-  const draw = () => {
-    fill(machine, 'machine', store.machine);
-    fill(rows, 'measurement', store.measurements.join(' + '));
+  let drawing = 0;
+  const draw = async () => {
+    const mine = ++drawing;
+    const names = store.files.filter((file) => file.kind === 'machine').map((file) => file.name);
+    fill(machine, 'machine', names, store.machine);
+    // A spreadsheet that is still to be imported is no measurement.
+    const measured = await measurementFiles();
+    if (mine === drawing) fill(rows, 'measurement', measured, store.measurements.join(' + '));
   };
   machine.addEventListener('change', () => choose(machine.value, store.measurements));
   rows.addEventListener('change', () => choose(store.machine, rows.value ? rows.value.split(' + ') : []));
@@ -155,10 +160,10 @@ async function start() {
   const old = remembered(),
     there = (name) => store.files.some((file) => file.name === name);
   const machines = store.files.filter((file) => file.kind === 'machine'),
-    rows = store.files.filter((file) => file.kind === 'measurement');
+    rows = await measurementFiles();
   await choose(
     there(old.machine) ? old.machine : machines.length === 1 ? machines[0].name : '',
-    old.measurements?.every(there) && old.measurements.length ? old.measurements : rows.length === 1 ? [rows[0].name] : [],
+    old.measurements?.every(there) && old.measurements.length ? old.measurements : rows.length === 1 ? rows : [],
   );
   document.body.dataset.ready = 'yes';
 }

@@ -3,7 +3,7 @@ import { el } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
 import { getJson } from './api.js';
 import { panel } from './parts.js';
-import { on, store } from './store.js';
+import { emit, on, store } from './store.js';
 
 const kFrom = {
   data: ['measured', 'the readings determine it'],
@@ -43,11 +43,14 @@ export function parameterPanel() {
   on('rows', async () => {
     body.replaceChildren();
     words.textContent = '';
+    store.parameters = [];
+    emit('parameters');
     if (!store.rows) return;
     const asked = store.rows;
     const list = await getJson('/api/parameters', { machine: store.machine, measurement: store.measurements }).catch(() => []);
     if (asked !== store.rows) return;
     store.parameters = list;
+    emit('parameters');
     body.replaceChildren(...list.slice(0, kShown).map(row));
     const count = (from) => list.filter((one) => origin(one) === from).length;
     words.textContent =

@@ -5,6 +5,7 @@ import { beginPanel } from './begin.js';
 import { importInstrument } from './instrument.js';
 import { optionFields } from './options.js';
 import { button, guarded, panel, showError } from './parts.js';
+import { kReflector } from './reflector.js';
 import { loadRows } from './rows.js';
 import { importSheet } from './sheet.js';
 import { stoodPanel } from './stood.js';
@@ -25,8 +26,11 @@ export async function choose(machine, measurements) {
   await loadRows();
 }
 
-/** Makes a measurement of a file of the project, as its kind asks for. `beside`: measurements to use with it. */
-async function importFile(name, kind, box, repair, beside = []) {
+/**
+ * Makes a measurement of a file of the project, as its kind asks for. `beside`: measurements to use with it; `again`: a table is
+ * shown although it can be read without help, because it was read before, and may have another sheet to read.
+ */
+async function importFile(name, kind, box, repair, { beside, again }) {
   const done = (output) => choose(store.machine, [...beside, output]);
   if (kind === 'printer') return importInstrument(box, 'printer', name, done);
   if (kind === 'trace') return importInstrument(box, 'ballbar-trace', name, done);
@@ -39,11 +43,16 @@ async function importFile(name, kind, box, repair, beside = []) {
   }
   // Later sheets, and a sheet that is read differently, come beside what was chosen in the meantime.
   let made = null;
-  return importSheet(box, name, (outputs) => {
-    const others = made ? store.measurements.filter((one) => !made.includes(one) && !outputs.includes(one)) : beside;
-    made = outputs;
-    return choose(store.machine, [...others, ...outputs]);
-  });
+  return importSheet(
+    box,
+    name,
+    (outputs) => {
+      const others = made ? store.measurements.filter((one) => !made.includes(one) && !outputs.includes(one)) : beside;
+      made = outputs;
+      return choose(store.machine, [...others, ...outputs]);
+    },
+    again,
+  );
 }
 
 /** Asks in a box, with a button for each answer [label, value]; the first answer is the usual one. */
@@ -74,7 +83,7 @@ function question(box, words, answers) {
   });
 }
 
-/** A machine file for the description of a robot; which of several end links is the tool is asked in a box. */
+/** A machine file for the description of a robot; which of several end links is the tool, and what is measured, is asked in a box. */
 async function machineOfRobot(name, ask) {
   const stem = name.replace(/\.[^.]*$/, ''),
     { ends } = await getJson('/api/robot', { name }),
@@ -89,17 +98,24 @@ async function machineOfRobot(name, ask) {
     if (!link) return null;
   }
   const tip = link ? { tip: link } : {};
+  const measured = await question(ask, `${name}: what does the instrument measure at the tool?`, [
+    [`${kReflector}: the fit finds it`, 'reflector'],
+    [`The point of ${link ?? order[0] ?? 'the last link'} itself, or one whose place I state later`, 'point'],
+    ['Not now', ''],
+  ]);
+  if (!measured) return null;
+  const reflector = measured === 'reflector' ? { reflector: true } : {};
   const output = freeName(stem, '.xml');
-  await run({ command: 'new', type: 'robot', urdf: name, ...tip, output, measurements: freeName(`${stem}_survey`, '.csv') });
+  await run({ command: 'new', type: 'robot', urdf: name, ...tip, ...reflector, output, measurements: freeName(`${stem}_survey`, '.csv') });
   return choose(output, store.measurements);
 }
 
 /** Uses a file of the project: chooses it, or makes a measurement or a machine file of it. `ask`: the box for a question. */
-async function use(name, kind, { box, repair, ask, beside = [] }) {
+async function use(name, kind, { box, repair, ask, beside = [], again = false }) {
   if (kind === 'machine') return choose(name, store.measurements);
   if (kind === 'robot') return machineOfRobot(name, ask);
   if (kind === 'measurement') return choose(store.machine, [...beside, name]);
-  return importFile(name, kind, box, repair, beside);
+  return importFile(name, kind, box, repair, { beside, again });
 }
 
 /** Does a command of the history read a file or write it? */
@@ -148,7 +164,7 @@ async function deleteAsked(name, ask) {
 }
 
 /** A dropped file becomes part of the project; what is no measurement file yet is imported. `beside`: measurements to use with it. */
-async function take(file, { repair, box, beside, ask, notes }) {
+async function take(file, { repair, boxOf, beside, ask, notes }) {
   const kept = await nameToKeep(file, ask);
   if (!kept) return;
   const { name } = kept;
@@ -158,7 +174,7 @@ async function take(file, { repair, box, beside, ask, notes }) {
   const kind = await kindOfName(name),
     advice = adviceOn(kind);
   if (!advice) {
-    await use(name, kind, { box, repair, ask, beside });
+    await use(name, kind, { box: boxOf(name), repair, ask, beside });
     return;
   }
   const note = el('p', { class: 'note', role: 'status', 'data-advice': name }, `${name} ${advice} `);
@@ -281,19 +297,25 @@ export function projectView(root) {
     pick,
     repair.elements,
   );
+  /** Each file has a box of its own: the sheets and notes of a workbook stay beside those of the next file. */
+  const boxOf = (name) => {
+    const old = [...box.children].find((one) => one.dataset.of === name);
+    const own = el('div', { 'data-of': name });
+    old?.remove();
+    box.prepend(own);
+    return own;
+  };
   const takeAll = async (files) => {
     error.replaceChildren();
     notes.replaceChildren();
-    box.replaceChildren();
+    // Sheets that nobody has imported yet stay within reach.
+    for (const one of [...box.children]) if (!one.querySelector('.other-sheets')) one.remove();
     // Measurements of one drop belong together: two instruments at one machine.
     const before = new Set(store.measurements);
     for (const file of files) {
       try {
         const beside = store.measurements.filter((name) => !before.has(name));
-        // Each file has a box of its own: the sheets and notes of a workbook stay beside those of the next file.
-        const own = el('div', {});
-        box.prepend(own);
-        await take(file, { repair: repair.values(), box: own, beside, ask: error, notes });
+        await take(file, { repair: repair.values(), boxOf, beside, ask: error, notes });
       } catch (why) {
         await showBadLine(error, file, why.message);
         return;
@@ -317,8 +339,9 @@ export function projectView(root) {
   const files = el('tbody', { id: 'files' });
   const asked = el('div', { id: 'file-error' });
   const byTable = async (name, done) => {
-    await importSheet(box, name, done, true);
-    box.scrollIntoView({ block: 'nearest' });
+    const own = boxOf(name);
+    await importSheet(own, name, done, true);
+    own.scrollIntoView({ block: 'nearest' });
   };
   const act = {
     // What was dropped is read again, not the table that was made of it.
@@ -329,14 +352,17 @@ export function projectView(root) {
       const kind = source === name ? 'sheet' : await kindOfName(source);
       if (kind === 'sheet' || kind === 'measurement') return byTable(source, instead);
       const { importer } = store.files.find((one) => one.name === source);
-      await importInstrument(box, kind === 'trace' ? 'ballbar-trace' : (importer ?? kind), source, (output) => instead([output]), true);
-      return box.scrollIntoView({ block: 'nearest' });
+      const own = boxOf(source);
+      await importInstrument(own, kind === 'trace' ? 'ballbar-trace' : (importer ?? kind), source, (output) => instead([output]), true);
+      return own.scrollIntoView({ block: 'nearest' });
     },
     use: async (name, kind) => {
       error.replaceChildren();
-      await use(name, kind, { box, repair: repair.values(), ask: error }).catch((why) => showError(error, why));
+      const own = boxOf(name),
+        again = readInto(name).length > 0;
+      await use(name, kind, { box: own, repair: repair.values(), ask: error, again }).catch((why) => showError(error, why));
       // The panel that asks about a file is above the table.
-      if (box.childElementCount) box.scrollIntoView({ block: 'nearest' });
+      if (own.childElementCount) own.scrollIntoView({ block: 'nearest' });
     },
     remove: (name) => guarded(asked, () => deleteAsked(name, asked)),
   };

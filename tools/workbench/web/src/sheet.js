@@ -178,7 +178,7 @@ export async function importSheet(box, name, handOver, asks = false) {
     if (!left.length || kind !== 'table') return null;
     return el(
       'div',
-      { class: 'controls', id: 'other-sheets' },
+      { class: 'controls other-sheets' },
       el('span', {}, 'The workbook has more sheets with tables:'),
       left.map((one) =>
         button(

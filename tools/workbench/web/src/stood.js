@@ -103,7 +103,11 @@ export function stoodPanel(choose, byTable) {
       ),
     );
   };
-  on('rows', draw);
+  on('rows', () => {
+    draw();
+    // The other panels are drawn anew too: the question is looked for when they are.
+    if (room.childElementCount) requestAnimationFrame(() => room.scrollIntoView({ block: 'nearest' }));
+  });
   draw();
   return room;
 }

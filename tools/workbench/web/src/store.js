@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the views share, and how they hear of a change. Events: project, rows, selection, overlay, compared,
+// What the views share, and how they hear of a change. Events: project, rows, parameters, selection, overlay, compared,
 // diagnosed, steps, safety, uploaded, view, job.
 const listeners = new Map();
 
@@ -22,6 +22,7 @@ export const store = {
   safety: null,
   uploaded: false,
   exported: false, // files for a control were written
+  leftOut: [], // what these files do not correct
   diagnosed: new Set(), // measurements that were asked what is missing
   visited: new Set(), // views that were looked at
 };

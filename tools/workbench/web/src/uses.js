@@ -93,6 +93,13 @@ export async function kindOf(file) {
   return kind === 'measurement' && !/\.csv$/i.test(file.name) ? 'sheet' : kind;
 }
 
+/** The names of the files of the project that the commands read as they are. */
+export async function measurementFiles() {
+  const { files } = store,
+    kinds = await Promise.all(files.map(kindOf));
+  return files.filter((_, i) => kinds[i] === 'measurement').map((file) => file.name);
+}
+
 /** A file was replaced: what it is has to be asked again, though its time and size may be the same. */
 export function forget(name) {
   for (const key of [...known.keys()]) if (key.startsWith(`${name} `)) known.delete(key);
