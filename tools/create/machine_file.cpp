@@ -246,7 +246,14 @@ std::string plus(double value, const std::string& name) {
 }
 
 std::string arm_rows(const MachinePlan& plan) {
-  std::string text = "  <transforms branch=\"tool\">\n";
+  std::string text = "  <transforms branch=\"tool\"";
+  if (!plan.link.empty()) {
+    text += fmt::format(" link=\"{}\" frame=\"", text::escape_attribute(plan.link));
+    for (std::size_t k = 0; k < plan.link_frame.size(); ++k)
+      text += (k > 0 ? " " : "") + number(plan.link_frame[k]);
+    text += '"';
+  }
+  text += ">\n";
   int n = 1;
   for (std::size_t i = 0; i < plan.arm.size(); ++i) {
     const DhRow& row = plan.arm[i];

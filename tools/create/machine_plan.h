@@ -39,6 +39,9 @@ struct MachinePlan {
   std::array<double, 3> tool{};
   std::vector<DhRow> arm;  // rows of a robot, one row for each joint; empty for other
                            // machines
+  /// End link of the URDF of a robot, and its frame in the frame of the last row: T(X,Y,Z)·Rx·Ry·Rz, mm, deg
+  std::string link{};
+  std::array<double, 6> link_frame{};
   /// BaseShift: base of the chain in the measuring frame, mm and deg
   std::array<double, 6> base{};
   /// True if only errors are free in a fit that an instrument along each axis can measure. If only such

@@ -158,7 +158,7 @@ void require_arm(const std::vector<UrdfJoint>& way, const std::string& file) {
   }
 }
 
-std::array<double, 6> base_of(const Isometry3d& frame) {
+std::array<double, 6> six_of(const Isometry3d& frame) {
   const Vector3d at = frame.translation();
   const Vector3d turn = frame.linear().eulerAngles(0, 1, 2) * kDegPerRad;
   return {clean(at.x()), clean(at.y()), clean(at.z()), clean(turn.x()), clean(turn.y()), clean(turn.z())};
@@ -193,7 +193,7 @@ UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::
   if (lines.empty())
     throw text::InputError({file, 1}, arm.tip, "no joint between the root and this link moves");
   Isometry3d frame = format::first_row_frame(lines.front());
-  arm.base = base_of(frame);
+  arm.base = six_of(frame);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const bool prismatic = arm.rows[i].prismatic;
     arm.rows[i] = i + 1 < lines.size() ? row_to(frame, lines[i + 1]) : row_to_tip(frame.inverse() * at);
@@ -203,6 +203,7 @@ UrdfArm parse_urdf(const std::string& text, const std::string& file, const std::
   const Isometry3d rest = frame.inverse() * at;
   arm.tip_rotation = rest.linear();
   arm.tip_at = rest.translation().unaryExpr(&clean);
+  arm.tip_frame = six_of(rest);
   return arm;
 }
 

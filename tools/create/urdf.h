@@ -18,7 +18,9 @@ struct UrdfArm {
   std::vector<PlannedAxis> axes;  // names and limits of the joints; deg, mm
   /// Frame of the first row in the frame of the root link, T(X,Y,Z)·Rx·Ry·Rz: mm, deg
   std::array<double, 6> base{};
-  // Frame of the end link in the frame of the last row, mm.
+  /// Frame of the end link in the frame of the last row, T(X,Y,Z)·Rx·Ry·Rz: mm, deg
+  std::array<double, 6> tip_frame{};
+  // The same frame as rotation and place, mm.
   Eigen::Matrix3d tip_rotation;
   Eigen::Vector3d tip_at;
   /// Converts a point from the frame of the end link to the frame of the last row, rounded to 1e-9 mm.

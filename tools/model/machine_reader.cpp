@@ -679,10 +679,16 @@ class Reader {
   }
 
   void read_transforms(const pugi::xml_node& list, std::set<std::string>& branches) {
-    check_attributes(list, {"branch", "note"});
+    check_attributes(list, {"branch", "link", "frame", "note"});
     const std::string branch = attribute(list, "branch").value_or("tool");
     if (branch != "tool" && branch != "workpiece")
       fail_attribute(list, "branch", branch, "branch is tool or workpiece");
+    const std::string frame = attribute(list, "frame").value_or("0 0 0 0 0 0");
+    const std::vector<std::string> numbers = text::words_in(frame, " ");
+    if (numbers.size() != 6 || !std::ranges::all_of(numbers, [](const std::string& one) {
+          return text::parse_number(one).has_value();
+        }))
+      fail_attribute(list, "frame", frame, "expected the six numbers X Y Z rX rY rZ of the link");
     if (!branches.insert(branch).second)
       fail(list, branch, "the file has a second <transforms> of this branch");
     std::vector<Transform>& transforms = branch == "tool" ? machine_.tool : machine_.workpiece;

@@ -11,6 +11,7 @@
 
 #include "tools/create/machine_file.h"
 #include "tools/create/urdf.h"
+#include "tools/exchange/tip_link.h"
 #include "tools/exchange/urdf_arm.h"
 #include "tools/format/urdf_chain.h"
 #include "tools/model/chain/chain.h"
@@ -200,6 +201,8 @@ std::string calibrated(const std::string& urdf, const std::string& tip) {
   create::MachinePlan plan = create::plan_robot(arm.axes, arm.rows);
   plan.name = arm.name;
   plan.base = arm.base;
+  plan.link = arm.tip;
+  plan.link_frame = arm.tip_frame;
   plan.tool = arm.tool({12, -7, 80});
   return create::machine_file(plan);
 }
@@ -316,6 +319,55 @@ TEST(UrdfOriginal, HasAnAddedOffsetOfThePointOutsideItsTip) {
   for (std::size_t i = 0; i < is.size(); ++i)
     EXPECT_TRUE(is[i].origin.isApprox(was[i].origin, 1e-9)) << is[i].name;
   EXPECT_NEAR(Vector3d(file.original->tool_mm.data()).norm(), std::hypot(12 + 31, 7, 80), 1e-6);
+}
+
+// The parameters of ToolShift are in the frame of the last row, whose z is not that of every tip (KUKA:
+// opposite).
+TEST(TipLink, SaysWhereTheReflectorIsInTheFrameOfTheLink) {
+  const std::string urdf = maker(kFlange), text = calibrated(urdf, "tool0");
+  Machine machine = parse_machine(text, "maker.xml");
+  const std::optional<exchange::TipLink> link = exchange::tip_link(text);
+  ASSERT_TRUE(link);
+  EXPECT_EQ(link->name, "tool0");
+  // GIVEN a reflector that the fit put at (37, 21, -117) mm from the tool point
+  machine.tool_shifts.emplace_back();
+  machine.tool_shifts[0].value = {37, 21, -117, 0, 0, 0};
+  const std::vector<std::string> places = exchange::tool_shift_places(machine, text);
+  ASSERT_EQ(places.size(), 1U);
+  Vector3d said;
+  ASSERT_EQ(std::sscanf(places[0].c_str(), "ToolShift is at %lf, %lf, %lf mm in the frame of the link tool0",
+                        &said[0], &said[1], &said[2]),
+            3)
+      << places[0];
+  // THEN the place in the link, carried through the URDF, is the point that the chain of the machine carries
+  States states = make_states(1, machine);
+  std::map<std::string, double> at;
+  const std::vector<std::string> names = exchange::joint_names(machine, text);
+  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis)
+    at[names[axis]] = states.axis[axis][0] = 10.0 + 7 * static_cast<double>(axis);
+  const Poses pose = forward(machine, states);
+  Isometry3d base = Isometry3d::Identity();
+  const std::array<double, 6>& shift = machine.base_shifts.at(0).value;
+  base.translate(Vector3d(shift[0], shift[1], shift[2]));
+  for (int k = 0; k < 3; ++k)
+    base.rotate(
+        Eigen::AngleAxisd(shift[3 + static_cast<std::size_t>(k)] / 57.29577951308232, Vector3d::Unit(k)));
+  const Vector3d by_chain =
+      base * (Vector3d(pose.position.col(0)) + pose.rotation[0] * Vector3d(37, 21, -117));
+  EXPECT_LT((frame_of(urdf, "tool0", at) * said - by_chain).norm(), 2e-4);  // the sentence has 1e-4 mm
+  // AND a machine file that was made from no URDF names the frame of the parameters.
+  std::string plain = text;
+  plain.erase(plain.find(" link=\"tool0\""),
+              plain.find(">\n", plain.find(" link=\"tool0\"")) - plain.find(" link=\"tool0\""));
+  EXPECT_NE(exchange::tool_shift_places(machine, plain).at(0).find("frame of the tool"), std::string::npos);
+  machine.tool_shifts.clear();
+  EXPECT_TRUE(exchange::tool_shift_places(machine, text).empty());
+}
+
+TEST(TipLink, AFrameThatIsNoSixNumbersIsRefused) {
+  std::string text = calibrated(maker(kFlange), "tool0");
+  text.replace(text.find(" frame=\""), 8, " frame=\"one ");
+  EXPECT_THROW(parse_machine(text, "maker.xml"), text::InputError);
 }
 
 TEST(UrdfOriginal, HasOneMoreLinkWhereTheTipTurnsWithTheLastJoint) {

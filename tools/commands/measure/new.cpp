@@ -68,6 +68,8 @@ create::MachinePlan plan_of_urdf(const NewArguments& arguments, const CLI::App& 
   create::MachinePlan plan = create::plan_robot(arm.axes, arm.rows);
   plan.name = arm.name;
   plan.base = arm.base;
+  plan.link = arm.tip;
+  plan.link_frame = arm.tip_frame;
   plan.tool =
       arm.tool(arguments.tool.empty() ? std::array<double, 3>{} : point_of(arguments.tool, ',', "--tool"));
   return plan;

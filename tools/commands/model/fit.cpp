@@ -7,6 +7,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/survey.h"
+#include "tools/exchange/tip_link.h"
 #include "tools/fit/coverage/domain.h"
 #include "tools/fit/decisions.h"
 #include "tools/fit/fit.h"
@@ -246,6 +247,8 @@ void run_fit(const FitArguments& arguments) {
     throw text::LimitNotMet(result.absurd + "; nothing is written" + (tool.empty() ? "" : ". ") + tool);
   nlohmann::ordered_json json = results::fit_json(result, m);
   if (!tool.empty()) json["notes"].push_back(tool);
+  const std::vector<std::string> places = exchange::tool_shift_places(result.machine, text);
+  for (const std::string& one : places) json["notes"].push_back(one);
   if (!arguments.output.empty())
     text::write_file(
         arguments.output,
@@ -262,6 +265,7 @@ void run_fit(const FitArguments& arguments) {
   for (const lint::DensePoints& points : lint::dense_points(result.machine, positions_of(m), readings_of(m)))
     fmt::print(stderr, "note: {}: {}\n", lint::dense_points_text(points), lint::dense_points_remedy(points));
   print_result(human_stream(arguments.json), result, m);
+  for (const std::string& one : places) fmt::print(human_stream(arguments.json), "{}\n", one);
   results::print_domains(human_stream(arguments.json), json["domains"]);
 }
 

@@ -5,6 +5,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/out/exporting.h"
+#include "tools/exchange/tip_link.h"
 #include "tools/exchange/urdf_arm.h"
 #include "tools/text/files.h"
 
@@ -49,6 +50,10 @@ void export_urdf(const ExchangeArguments& arguments) {
         tool[1], tool[2]);
     tip = {{"link", file.original->tip}, {"added", file.original->added_tip}, {"tool_mm", three_json(tool)}};
   }
+  const std::string text = text::read_file(arguments.machine);
+  if (exchange::tip_link(text))
+    for (const std::string& one : exchange::tool_shift_places(machine, text))
+      fmt::print(human_stream(arguments.json), "{}\n", one);
   Json undetermined = Json::array();
   for (const exchange::UndeterminedJoint& one : file.undetermined)
     undetermined.push_back({{"joint", one.joint}, {"parameters", one.parameters}});

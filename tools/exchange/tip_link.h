@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/model/machine.h"
+
+namespace vernier::exchange {
+
+/// The end link of the URDF from which a machine file was made: attributes `link` and `frame` of
+/// <transforms>.
+struct TipLink {
+  std::string name;
+  Eigen::Isometry3d frame;  // frame of the link in the frame of the last row, mm
+};
+
+/// Returns the end link of a machine file; no value without the attribute. `text`: the machine file, valid.
+std::optional<TipLink> tip_link(const std::string& text);
+
+/// Returns a sentence for each ToolShift of a machine: its place in the frame of the end link, mm. A machine
+/// file without the name of a link: one sentence that names the frame of ToolShift. Empty without ToolShift.
+std::vector<std::string> tool_shift_places(const model::Machine& machine, const std::string& text);
+
+}  // namespace vernier::exchange
