@@ -46,6 +46,13 @@ std::optional<TipLink> tip_link(const std::string& text) {
   return std::nullopt;
 }
 
+Eigen::Vector3d tool_shift_place(const model::Machine& machine, const model::BaseShift& shift,
+                                 const std::optional<TipLink>& link) {
+  const Eigen::Vector3d in_row =
+      tool_point(machine) + Eigen::Vector3d(shift.value[0], shift.value[1], shift.value[2]);
+  return link ? Eigen::Vector3d(link->frame.inverse() * in_row) : in_row;
+}
+
 std::vector<std::string> tool_shift_places(const model::Machine& machine, const std::string& text) {
   if (machine.tool_shifts.empty()) return {};
   const std::optional<TipLink> link = tip_link(text);
@@ -55,9 +62,7 @@ std::vector<std::string> tool_shift_places(const model::Machine& machine, const 
         "row of <transforms>"};
   std::vector<std::string> sentences;
   for (const model::BaseShift& shift : machine.tool_shifts) {
-    const Eigen::Vector3d in_row =
-        tool_point(machine) + Eigen::Vector3d(shift.value[0], shift.value[1], shift.value[2]);
-    const Eigen::Vector3d at = link->frame.inverse() * in_row;
+    const Eigen::Vector3d at = tool_shift_place(machine, shift, link);
     sentences.push_back(
         fmt::format("{} is at {:.4f}, {:.4f}, {:.4f} mm in the frame of the link {} of the URDF; its "
                     "parameters are in the frame of the last row of the machine file",

@@ -19,6 +19,11 @@ struct TipLink {
 /// Returns the end link of a machine file; no value without the attribute. `text`: the machine file, valid.
 std::optional<TipLink> tip_link(const std::string& text);
 
+/// Returns the place of a ToolShift in the frame in which `vernier new --tool` takes the tool point, mm: that
+/// of the end link of the URDF, otherwise that of the last row.
+Eigen::Vector3d tool_shift_place(const model::Machine& machine, const model::BaseShift& shift,
+                                 const std::optional<TipLink>& link);
+
 /// Returns a sentence for each ToolShift of a machine: its place in the frame of the end link, mm. A machine
 /// file without the name of a link: one sentence that names the frame of ToolShift. Empty without ToolShift.
 std::vector<std::string> tool_shift_places(const model::Machine& machine, const std::string& text);

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tools/kinematics/correction.h"
 #include "tools/maths/factors.h"
+#include "tools/maths/median.h"
 #include "tools/model/chain/chain.h"
 #include "tools/text/error.h"
 
@@ -40,6 +42,8 @@ Eigen::MatrixXd Corrector::commands(const model::States& states) {
     const kinematics::CorrectionResult corrected =
         kinematics::correct(machine_, states, {.with_rotary = options_.with_rotary});
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) keep(i, states.axis[i] + corrected.offset[i]);
+    conditions_.clear();
+    for (const kinematics::Inverse& one : corrected.each) conditions_.push_back(one.condition);
     return result;
   }
   kinematics::InverseOptions solving;
@@ -53,7 +57,29 @@ Eigen::MatrixXd Corrector::commands(const model::States& states) {
   return result;
 }
 
-void Corrector::count(const model::States& states, const Eigen::MatrixXd& commands) {
+void Corrector::count_beyond(const model::States& states, const Eigen::MatrixXd& commands,
+                             const std::vector<std::size_t>& lines) {
+  if (options_.back) return;
+  for (std::size_t state = 0; state < states.count; ++state) {
+    const auto at = static_cast<Eigen::Index>(state);
+    BeyondLimit most;
+    double share = 1;  // of the limit
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const auto& limit = machine_.axes[i].max_correction;
+      const double size = std::abs(commands(static_cast<Eigen::Index>(i), at) - states.axis[i][at]);
+      if (!limit || size <= share * *limit) continue;
+      share = *limit > 0 ? size / *limit : std::numeric_limits<double>::infinity();
+      most = {i, size, state < lines.size() ? lines[state] : 0,
+              state < conditions_.size() ? conditions_[state] : 0};
+    }
+    if (most.size > 0) summary_.beyond.push_back(most);
+  }
+  if (!conditions_.empty()) summary_.usual_condition = maths::median(conditions_);
+}
+
+void Corrector::count(const model::States& states, const Eigen::MatrixXd& commands,
+                      const std::vector<std::size_t>& lines) {
+  count_beyond(states, commands, lines);
   // The result is tested with the chain, not by the report of the solver.
   model::States there = states;
   for (std::size_t i = 0; i < machine_.axes.size(); ++i) {

@@ -17,13 +17,24 @@ struct CorrectorOptions {
   bool back = false;
 };
 
+/// A position whose correction exceeds the maxcorrection of an axis.
+struct BeyondLimit {
+  std::size_t axis = 0;  // the axis of this position that exceeds its limit most
+  double size = 0;       // its correction, mm or deg
+  std::size_t line = 0;  // of the list; 0: a position of a program
+  /// Condition number of the scaled Jacobian of the axes: large near a singular pose. 0: not known
+  double condition = 0;
+};
+
 /// Statistics of the changes to the positions of a list or a program.
 struct CorrectionSummary {
-  std::size_t positions = 0;      // number of positions in a list; for a program, number of evaluated
-                                  // positions
-  std::size_t not_converged = 0;  // number of these positions at which the solution did not converge
-  std::vector<double> largest;    // largest correction of each axis, mm or deg
-  double left_mm = 0;             // largest distance between the corrected and the ideal tool point
+  std::size_t positions = 0;        // number of positions in a list; for a program, number of evaluated
+                                    // positions
+  std::size_t not_converged = 0;    // number of these positions at which the solution did not converge
+  std::vector<double> largest;      // largest correction of each axis, mm or deg
+  double left_mm = 0;               // largest distance between the corrected and the ideal tool point
+  std::vector<BeyondLimit> beyond;  // positions that exceed a maxcorrection, in their order
+  double usual_condition = 0;       // median condition number of the positions of the last commands()
 
   /// Returns the largest correction of the linear axes together, um.
   double largest_um(const model::Machine& machine) const;
@@ -42,8 +53,10 @@ class Corrector {
   /// the inputs of the states are used without change. Throws InputError if the value of the chain is not
   /// finite.
   Eigen::MatrixXd commands(const model::States& states);
-  /// Adds positions to the statistics of summary().
-  void count(const model::States& states, const Eigen::MatrixXd& commands);
+  /// Adds positions to the statistics of summary(), after commands() of the same positions. `lines`: their
+  /// lines in a list; empty: a program.
+  void count(const model::States& states, const Eigen::MatrixXd& commands,
+             const std::vector<std::size_t>& lines = {});
   const CorrectionSummary& summary() const { return summary_; }
   bool back() const { return options_.back; }
 
@@ -51,7 +64,11 @@ class Corrector {
   const model::Machine& machine_;
   model::Machine nominal_;
   CorrectorOptions options_;
+  void count_beyond(const model::States& states, const Eigen::MatrixXd& commands,
+                    const std::vector<std::size_t>& lines);
+
   CorrectionSummary summary_;
+  std::vector<double> conditions_;  // of the last commands()
 };
 
 /// First words of an output file. The first words identify a file that was corrected before, and a file that

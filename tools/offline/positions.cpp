@@ -185,7 +185,7 @@ std::string corrected_positions(const std::string& text, const std::string& file
         throw text::InputError({file, table.csv().header_line}, machine.axes[i].name,
                                "the column of this axis is missing");
   const Eigen::MatrixXd commands = corrector.commands(states);
-  corrector.count(states, commands);
+  corrector.count(states, commands, table.csv().line);
 
   const auto written = [&](std::size_t axis, std::size_t row) {
     double value = commands(static_cast<Index>(axis), static_cast<Index>(row));

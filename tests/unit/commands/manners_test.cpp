@@ -343,6 +343,7 @@ TEST_F(Manners, CorrectWritesNothingBeyondMaxcorrection) {
   EXPECT_TRUE(said(
       "the correction of X is up to 0.2997 mm, and its maxcorrection in the machine file permits 0.25 mm"))
       << said_;
+  EXPECT_TRUE(said("largest in list.csv:3; 1 of 2 positions exceed a maxcorrection (line 3)")) << said_;
   EXPECT_FALSE(fs::exists(folder_ + "/far.csv"));
   EXPECT_EQ(run("vernier correct near.xml list.csv -o near.csv"), 0) << said_;
   // Backwards nothing moves.

@@ -22,13 +22,15 @@ namespace {
 
 constexpr double kReflector_mm = 40, kU_mm = 0.02;
 
-/// 60 points of a UR10e with zero errors of its joints, and the reflector beside the tool point.
-std::string survey(std::string robot) {
+/// 60 points of a UR10e with zero errors of its joints, and the reflector beside the tool point. `twist_deg`:
+/// error of the twist from joint 1 to 2, which no zero of a joint expresses.
+std::string survey(std::string robot, double reflector_mm = kReflector_mm, double twist_deg = 0) {
   const auto replace = [&](const std::string& from, const std::string& to) {
     ASSERT_NE(robot.find(from), std::string::npos) << from;
     robot.replace(robot.find(from), from.size(), to);
   };
-  replace("<TPX value=\"0\"", fmt::format("<TPX value=\"{}\"", kReflector_mm));
+  replace("<TPX value=\"0\"", fmt::format("<TPX value=\"{}\"", reflector_mm));
+  replace("<al1 value=\"0\"", fmt::format("<al1 value=\"{}\"", twist_deg));
   replace("<th2 value=\"0\"", "<th2 value=\"0.03\"");
   replace("<th5 value=\"0\"", "<th5 value=\"-0.04\"");
   const model::Machine machine = model::parse_machine(robot, "true.xml");
@@ -91,6 +93,42 @@ TEST_F(Reflector, IsEstimatedAndNotCorrected) {
   double largest_um = 0;
   for (const double one : pose["deviation_um"]) largest_um = std::max(largest_um, std::abs(one));
   EXPECT_LT(largest_um, 2000);
+}
+
+TEST_F(Reflector, BesideTheToolPointIsNotWhereTheLoopCorrects) {
+  text::write_file(folder + "/points.csv", survey(text::read_file(folder + "/robot.xml"), 150, 0.1));
+  ASSERT_EQ(
+      run("vernier set robot.xml --reflector -o with.xml && vernier improve with.xml points.csv -o v --yes"),
+      0)
+      << said;
+  EXPECT_THAT(said, HasSubstr("the readings are those of a reflector 15"));
+  // The tool point of the call is that of the reflector: with it the same rows judge the loop.
+  const auto at = said.find("vernier new --tool ") + std::string("vernier new --tool ").size();
+  double x = 0, y = 0, z = 0;
+  ASSERT_EQ(std::sscanf(said.c_str() + at, "%lf,%lf,%lf", &x, &y, &z), 3) << said;
+  ASSERT_EQ(run(fmt::format("vernier set robot.xml TPX={} TPY={} TPZ={} -o there.xml && vernier improve "
+                            "there.xml points.csv -o w --yes --json w.json",
+                            x, y, z)),
+            0)
+      << said;
+  EXPECT_THAT(said, Not(HasSubstr("the loop leaves")));
+}
+
+// With joint 5 near 0 the axes of joints 4 and 6 are nearly one line: the message names the row and this
+// reason.
+TEST_F(Reflector, CorrectionNearASingularPoseNamesTheRow) {
+  std::string robot = text::read_file(folder + "/robot.xml");
+  robot.replace(robot.find("<J4 "), 4, "<J4 maxcorrection=\"5\" ");
+  text::write_file(folder + "/limited.xml", robot);
+  ASSERT_EQ(run("vernier set limited.xml al4=0.2 -o errors.xml"), 0) << said;
+  std::string rows = "J1[deg],J2[deg],J3[deg],J4[deg],J5[deg],J6[deg]\n";
+  for (int i = 0; i < 9; ++i)
+    rows += fmt::format("{},-80,70,-75,{},{}\n", 10 * i, i == 6 ? -0.01 : -80 + i, 5 * i);
+  text::write_file(folder + "/list.csv", rows);
+  ASSERT_EQ(run("vernier correct errors.xml list.csv --rotary -o c.csv"), 2) << said;
+  EXPECT_THAT(said, HasSubstr("list.csv:8; 1 of 9 positions exceed a maxcorrection (line 8)"));
+  EXPECT_THAT(said, HasSubstr("near a singular pose"));
+  EXPECT_THAT(said, HasSubstr("no file is written"));
 }
 
 TEST_F(Reflector, IsDeclaredInANewMachineFile) {

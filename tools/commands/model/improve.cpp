@@ -17,7 +17,9 @@
 #include "tools/diagnose/sentences.h"
 #include "tools/effects/roles.h"
 #include "tools/exchange/printer/bed_shape.h"
+#include "tools/exchange/tip_link.h"
 #include "tools/format/columns.h"
+#include "tools/kinematics/inverse.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/rebind.h"
 #include "tools/plan/advice.h"
@@ -417,9 +419,31 @@ class Improver {
              "the fit estimates the position and the tilt of the touched objects with each model, and "
              "the loop moves the axes only; judge the correction by a measurement with the correction "
              "(compare --before OFF.csv --after ON.csv)";
+    if (const std::string beside = point_beside(model_step); !beside.empty()) return text + beside;
     return text +
            "the axes of the machine cannot express all errors of the model, such as rotations of the "
            "tool or an error in a direction without an axis; vernier compile states what remains";
+  }
+
+  /// Readings of a reflector beside the tool point, or an arm whose joints correct the tool point only.
+  static std::string point_beside(const ModelStep& model_step) {
+    constexpr double kBeside_mm = 1;  // times an angle of 1 mrad: 1 um
+    const model::Machine machine = model::parse_machine(model_step.text, model_step.file);
+    for (const model::BaseShift& shift : machine.tool_shifts) {
+      const double away = Eigen::Vector3d(shift.value[0], shift.value[1], shift.value[2]).norm();
+      if (away < kBeside_mm) continue;
+      const Eigen::Vector3d at =
+          exchange::tool_shift_place(machine, shift, exchange::tip_link(model_step.text));
+      return fmt::format(
+          "the readings are those of a reflector {:.4g} mm from the tool point (ToolShift), and the loop "
+          "corrects the tool point of the machine file, not the direction of the tool. State the tool point "
+          "at which the machine works; with the tool point at the reflector (vernier new --tool "
+          "{:.2f},{:.2f},{:.2f}) these rows judge the loop",
+          away, at.x(), at.y(), at.z());
+    }
+    if (!kinematics::linear_axes(machine).empty()) return {};
+    return "the joints correct the tool point, not the direction of the tool, and near a singular pose they "
+           "cannot move the tool point in every direction; vernier compile states the share of such poses";
   }
 
   /// Reports whether the last machine may run. No correction runs yet.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -75,17 +76,44 @@ std::string largest_corrections(const offline::CorrectionSummary& summary, const
   return with_rotary && summary.largest_deg(machine) > 0 ? um + " and " + deg : um;
 }
 
+/// Why the correction of a position is so large: near a singular pose axes compensate each other.
+std::string reason_of(const offline::BeyondLimit& one, const offline::CorrectionSummary& summary) {
+  constexpr double kNearSingular = 5;  // times the usual condition number
+  if (summary.usual_condition <= 0 || one.condition < kNearSingular * summary.usual_condition) return "";
+  return fmt::format(
+      ". There the machine is near a singular pose (condition number {:.3g}, median of all positions "
+      "{:.3g}), "
+      "in which axes turn about nearly the same line and a small error needs a large motion of them",
+      one.condition, summary.usual_condition);
+}
+
 /// A correction beyond maxcorrection would move the machine further than its user permits.
-void require_within_limits(const model::Machine& machine, const offline::CorrectionSummary& summary) {
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const model::Axis& axis = machine.axes[i];
-    if (!axis.max_correction || summary.largest[i] <= *axis.max_correction) continue;
-    const char* const unit = axis.rotary ? "deg" : "mm";
-    throw text::LimitNotMet(fmt::format(
-        "the correction of {} is up to {:.4g} {}, and its maxcorrection in the machine file permits "
-        "{:g} {}: no file is written",
-        axis.name, summary.largest[i], unit, *axis.max_correction, unit));
+void require_within_limits(const model::Machine& machine, const offline::CorrectionSummary& summary,
+                           const std::string& path) {
+  if (summary.beyond.empty()) return;
+  const offline::BeyondLimit& worst = *std::ranges::max_element(
+      summary.beyond, {},
+      [&](const offline::BeyondLimit& one) { return one.size / *machine.axes[one.axis].max_correction; });
+  const model::Axis& axis = machine.axes[worst.axis];
+  const char* const unit = axis.rotary ? "deg" : "mm";
+  std::string where =
+      fmt::format("{} of {} positions exceed a maxcorrection", summary.beyond.size(), summary.positions);
+  std::string remedy = "raise maxcorrection if your machine permits more";
+  if (worst.line > 0) {
+    constexpr std::size_t kMostLines = 12;  // of a message
+    std::vector<std::size_t> lines;
+    for (const offline::BeyondLimit& one : summary.beyond) lines.push_back(one.line);
+    const bool many = lines.size() > kMostLines;
+    if (many) lines.resize(kMostLines);
+    where = fmt::format("largest in {}:{}; {} (line{} {}{})", path, worst.line, where,
+                        lines.size() > 1 ? "s" : "", fmt::join(lines, ", "), many ? " ..." : "");
+    remedy = "take these positions out of the list or move them, or " + remedy;
   }
+  throw text::LimitNotMet(fmt::format(
+      "the correction of {} is up to {:.4g} {}, and its maxcorrection in the machine file permits {:g} {}: "
+      "no file is written, because positions that are not corrected among corrected ones would not be "
+      "noticed; {}{}: {}",
+      axis.name, worst.size, unit, *axis.max_correction, unit, where, reason_of(worst, summary), remedy));
 }
 
 /// The safety sheet says how far a fitted machine file can be trusted. Without the ranges of all axes there
@@ -153,7 +181,7 @@ void run_correct(const CorrectArguments& arguments) {
                     "file is written",
                     *path_um, arguments.deviation_um));
   if (!arguments.back) {
-    require_within_limits(machine, summary);
+    require_within_limits(machine, summary, arguments.path);
     note_what_is_not_safe(machine);
   }
   text::write_file(arguments.output, result);
