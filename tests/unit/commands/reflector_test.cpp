@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A reflector at an unknown place on the tool of a robot is a part of the set-up, and no error to correct.
+// Nor are another zero of a joint, another sign, and readings that slipped by a row.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/unit/commands/shell_folder.h"
 #include "tools/model/chain/prediction.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
 #include "tools/text/files.h"
+#include "tools/text/words.h"
 
 namespace vernier::reflector_test {
 
@@ -129,6 +135,50 @@ TEST_F(Reflector, CorrectionNearASingularPoseNamesTheRow) {
   EXPECT_THAT(said, HasSubstr("list.csv:8; 1 of 9 positions exceed a maxcorrection (line 8)"));
   EXPECT_THAT(said, HasSubstr("near a singular pose"));
   EXPECT_THAT(said, HasSubstr("no file is written"));
+}
+
+/// The table with the numbers of a column changed.
+std::string with_column(const std::string& table, std::size_t column, double factor, double add) {
+  std::string text;
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> cells = text::parts_of(line, ',');
+    if (!text.empty()) cells[column] = fmt::format("{:.5f}", factor * std::stod(cells[column]) + add);
+    text += fmt::format("{}\n", fmt::join(cells, ","));
+  }
+  return text;
+}
+
+TEST_F(Reflector, AnotherZeroOrSignOfAJointIsSaidByTheFit) {
+  ASSERT_EQ(run("vernier set robot.xml --reflector -o with.xml"), 0) << said;
+  ASSERT_EQ(run("vernier fit with.xml points.csv"), 0) << said;
+  EXPECT_THAT(said, Not(HasSubstr("is no error of the machine")));
+  const std::string table = text::read_file(folder + "/points.csv");
+  text::write_file(folder + "/zero.csv", with_column(table, 2, 1, -90));
+  ASSERT_EQ(run("vernier fit with.xml zero.csv --json f.json"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("an angle so near to 90 deg is no error of the machine"));
+  EXPECT_THAT(said, HasSubstr("with J3 + 90 deg in the readings"));
+  EXPECT_THAT(text::read_file(folder + "/f.json"), HasSubstr("with J3 + 90 deg"));
+  text::write_file(folder + "/sign.csv", with_column(table, 5, -1, 0));
+  ASSERT_EQ(run("vernier fit with.xml sign.csv"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("the other sign of J6"));
+}
+
+TEST_F(Reflector, ReadingsThatSlippedByARowAreNamed) {
+  ASSERT_EQ(run("vernier set robot.xml --reflector -o with.xml"), 0) << said;
+  std::istringstream lines(text::read_file(folder + "/points.csv"));
+  std::string line, slipped, joints;
+  std::getline(lines, slipped);
+  while (std::getline(lines, line)) {
+    const auto at =
+        std::string(line).rfind(',', line.rfind(',', line.rfind(',', line.rfind(',') - 1) - 1) - 1);
+    slipped += joints.empty() ? "" : "\n" + joints + line.substr(at);
+    joints = line.substr(0, at);
+  }
+  text::write_file(folder + "/slipped.csv", slipped + "\n");
+  EXPECT_EQ(run("vernier fit with.xml slipped.csv -o s.xml"), 2) << said;
+  EXPECT_THAT(said, HasSubstr("if each reading moves to the row after its own"));
+  EXPECT_FALSE(std::filesystem::exists(folder + "/s.xml"));
 }
 
 TEST_F(Reflector, IsDeclaredInANewMachineFile) {

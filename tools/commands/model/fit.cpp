@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tools/commands/command.h"
+#include "tools/commands/other_readings.h"
 #include "tools/commands/survey.h"
 #include "tools/exchange/tip_link.h"
 #include "tools/fit/coverage/domain.h"
@@ -243,10 +244,17 @@ void run_fit(const FitArguments& arguments) {
                                            [](const auto& one) { return one.code == "something-missing"; });
   const std::string tool =
       missing || !result.absurd.empty() ? unknown_tool(machine, m, options, result) : std::string();
+  const std::string rows =
+      missing || !result.absurd.empty() ? readings_of_other_rows(machine, m) : std::string();
+  if (!result.absurd.empty() && !rows.empty()) throw text::LimitNotMet(rows + "; nothing is written");
   if (!result.absurd.empty())
     throw text::LimitNotMet(result.absurd + "; nothing is written" + (tool.empty() ? "" : ". ") + tool);
   nlohmann::ordered_json json = results::fit_json(result, m);
-  if (!tool.empty()) json["notes"].push_back(tool);
+  for (const std::string& note : {tool, rows, other_zero_of_joint(machine, m, result)}) {
+    if (note.empty()) continue;
+    json["notes"].push_back(note);
+    fmt::print(stderr, "note: {}\n", note);
+  }
   const std::vector<std::string> places = exchange::tool_shift_places(result.machine, text);
   for (const std::string& one : places) json["notes"].push_back(one);
   if (!arguments.output.empty())
@@ -257,7 +265,6 @@ void run_fit(const FitArguments& arguments) {
     text::write_file(arguments.residuals, results::residual_csv(m, result.residual));
   write_json(arguments.json, json);
   for (const std::string& note : machine.notes) fmt::print(stderr, "note: {}\n", note);
-  if (!tool.empty()) fmt::print(stderr, "note: {}\n", tool);
   for (const fit::OtherSetUp& one : fit::files_set_up_elsewhere(result.machine, m))
     fmt::print(
         stderr, "note: {}{}\n", one.sentence(),
