@@ -351,6 +351,14 @@ async function caliper(page) {
   // The squareness of the page touch.
   assert.match(readFileSync(join(folder, 'square-fitted.xml'), 'utf8'), /EC0Y value="0\.00120/);
   await leftOut(page);
+  // Where the files of the printer go, and what the scales of a printed part contain.
+  await page.choose('#export-format', 'klipper');
+  await page.type('#view-export [data-option=steps]', '40,40,8');
+  for (const rule of await page.evaluate("[...document.querySelectorAll('#export-options [data-word]')].map((one) => one.dataset.word)"))
+    await page.click(`#export-options [data-word="${rule}"]`);
+  await page.click('#do-export');
+  await words(page, '#export-result', 'write [include vernier_steppers.cfg] into printer.cfg below the sections of the steppers');
+  await words(page, '#export-result', 'the shrinkage of its material');
 }
 
 /** On a small screen: what a format cannot express stands before the words of success, in sight, and with the last step of the path. */

@@ -298,6 +298,21 @@ void print_straight_parts(std::FILE* out, const exchange::PrinterCorrection& cor
     if (correction.steps[i] != 1)
       fmt::print(out, "scale {}: the files correct {:.4g} um/m\n", exchange::kLetters[i],
                  -(correction.steps[i] - 1) * kUmPerM);
+  if (correction.steps[0] != 1 || correction.steps[1] != 1)
+    fmt::print(out,
+               "the scales are those of the readings: if a printed part was measured, they contain the "
+               "shrinkage of its material, and another material needs other scales\n");
+}
+
+/// Where Klipper has to include the file of the steppers.
+void print_include(std::FILE* out, const std::vector<exchange::ConfigurationFile>& files) {
+  constexpr const char* kSteppers = "_steppers.cfg";
+  for (const exchange::ConfigurationFile& file : files)
+    if (file.name.ends_with(kSteppers))
+      fmt::print(out,
+                 "{0}: write [include {0}] into printer.cfg below the sections of the steppers ([stepper_x] "
+                 "and so on): above them it has no effect, because a later value replaces an earlier one\n",
+                 file.name);
 }
 
 /// The correction without skew and steps: what remains of the heights is that of straight axes.
@@ -334,6 +349,7 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   const Json files = write_folder(common, texts);
   print_errors(arguments, model, errors, touches);
   print_straight_parts(human_stream(common.json), correction);
+  print_include(human_stream(common.json), texts);
   Json extra = errors_json(errors);
   std::vector<exchange::LeftOut> left = remaining(errors.after_um);
   if (!follows_touches) {
