@@ -510,6 +510,7 @@ async function robot(page) {
   assert.ok(readFileSync(join(folder, 'urdf-arm/robot.urdf'), 'utf8').includes('q6'));
   await jointsOfOtherNames(page);
   await unknownTool(page);
+  await pointsAndPositions(page);
   await severalEnds(
     page,
     (ends) =>
@@ -535,6 +536,47 @@ const reflectorPoses = () =>
       return [...angles, ...point.map((one, j) => (one + 0.01 * Math.sin(7 * i + 3 * j)).toFixed(4)), 10].join(',');
     },
   ).join('\n')}\n`;
+
+/** The points of a tracker and the positions of the joints in two files: the page knows the columns, and asks for the other file. */
+async function pointsAndPositions(page) {
+  const rows = reflectorPoses()
+    .trim()
+    .split('\n')
+    .slice(1)
+    .map((line) => line.split(','));
+  const text_of = (head, cells) => `${head}\n${rows.map((row, i) => [`P${i + 1}`, ...cells(row)].join(';')).join('\n')}\n`;
+  await view(page, 'project');
+  await page.choose('#machine', 'arm.xml');
+  await page.drop([
+    { name: 'positions.csv', text: text_of(`Punkt;${[1, 2, 3, 4, 5, 6].map((k) => `q${k} [deg]`).join(';')}`, (row) => row.slice(0, 6)) },
+    { name: 'points.txt', text: text_of('Name;X [mm];Y [mm];Z [mm]', (row) => row.slice(6, 9)) },
+  ]);
+  const own = '[data-of="points.txt"]';
+  await words(page, `${own} #where-it-stood`, 'Where did the machine stand at each point?');
+  assert.deepEqual(await page.evaluate(`[...document.querySelectorAll('${own} [aria-label^="name of column"]')].map((one) => one.value)`), [
+    'point',
+    'x',
+    'y',
+    'z',
+  ]);
+  await page.type(`${own} [data-option=nominal]`, 'positions.csv');
+  await page.type(`${own} [data-option=set]`, 'u[um]=20');
+  // The machine file has no place of a reflector: the refusal has the button that declares it and reads the points again.
+  await page.click(`${own} #do-import`);
+  await words(page, `${own} .error`, 'press "A reflector is on the flange at a place that nobody measured"');
+  assert.ok(!(await text(page, `${own} .error`)).includes('vernier set'), await text(page, `${own} .error`));
+  await page.click(`${own} #import-reflector`);
+  await measured(page, 'points_read.csv');
+  await page.until("document.body.dataset.subject === 'yes'", 'the rows');
+  // A page begins at its top.
+  await page.evaluate('scrollTo(0, 500)');
+  await view(page, 'compare');
+  await page.until("document.getElementById('compare-figures') && scrollY === 0", 'the comparison from its top');
+  await view(page, 'add');
+  await page.click('#fit');
+  // The fit says where the reflector is, in the frame of the last link of the description.
+  await words(page, '#fit-notes', 'mm in the frame of the link l6 of the URDF');
+}
 
 /** A fit with an unknown tool says so on the page, and a button fits the tool point too. */
 async function unknownTool(page) {
@@ -569,6 +611,7 @@ async function unknownTool(page) {
   await words(page, '#fit-notes', 'The tool point of the machine file is probably not that of the measurement');
   await page.click('#fit-tool');
   await page.until("document.getElementById('command').textContent.includes('--free TPX,TPY,TPZ')", 'the fit of the tool point');
+  await chosen(page, 'arm-fitted-3.xml');
   await page.until("document.getElementById('fit-notes').textContent === ''", 'the note to go');
 }
 

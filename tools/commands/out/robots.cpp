@@ -2,6 +2,8 @@
 // `vernier export urdf`.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/out/exporting.h"
@@ -40,7 +42,9 @@ void export_urdf(const ExchangeArguments& arguments) {
         "base_link is the base of the rows of the machine file; the root link of the URDF from which the "
         "machine was made can have another place and orientation (--original keeps it)\n");
   } else {
-    const std::array<double, 3>& tool = file.original->tool_mm;
+    std::array<double, 3> tool = file.original->tool_mm;
+    constexpr double kShown_mm = 5e-5;  // of the digits below: no minus before a zero
+    for (double& one : tool) one = std::abs(one) < kShown_mm ? 0 : one;
     fmt::print(
         human_stream(arguments.json),
         "the joints of {} are calibrated up to the link {}{}; the tool point of the machine file is at "

@@ -37,6 +37,7 @@ async function fitInto(machine, label, options = {}) {
 function notesOfFit(machine, label, options, notes) {
   const box = document.getElementById('fit-notes');
   box.replaceChildren(...notes.map((one) => el('p', { class: 'note', role: 'status' }, printed(programWords(one)))));
+  if (notes.length) box.scrollIntoView({ block: 'nearest' });
   const free = notes.map((one) => one.match(/fit it: --free ([\w,]+)/)).find(Boolean);
   if (!free) return;
   const more = { ...options, free: [...(options.free ?? []), free[1]] };

@@ -36,6 +36,8 @@ function show(id) {
     view.root.hidden = one !== name;
     view.link.setAttribute('aria-current', one === name ? 'page' : 'false');
   }
+  // A page begins at its top, wherever the one before was read.
+  if (document.body.dataset.view !== name) document.documentElement.scrollTop = 0;
   document.body.dataset.view = name;
   store.visited.add(name);
   emit('view');

@@ -3,6 +3,7 @@ import { el } from '../../../report/web/src/dom.js';
 import { chart } from '../../../report/web/src/chart.js';
 import { getJson, named, Refused } from './api.js';
 import { fieldName } from './options.js';
+import { kReflector } from './reflector.js';
 import { store } from './store.js';
 
 export function button(label, act, attributes = {}) {
@@ -44,6 +45,7 @@ export const programWords = (words) =>
   words
     ?.replace(kTool, toolWords)
     .replace(/: vernier set \S+ --reflector -o NEW\.xml declares it/g, ': press "Declare the reflector"')
+    .replace(/declare it in the machine file \(vernier set MACHINE --reflector\)/g, `press "${kReflector}"`)
     .replace(
       / \(import table --directions from-order\)/g,
       ' under Project: press "read differently" beside the file, and choose "from-order" in the field "directions"',

@@ -5,6 +5,8 @@ import { byMachine, kNames } from './joints.js';
 import { optionFields } from './options.js';
 import { button, gate, guarded, pageWords, panel } from './parts.js';
 import { pointFields, pointsOnPage, pointWords } from './points.js';
+import { choose } from './project.js';
+import { declareReflector, kReflector } from './reflector.js';
 import { on, store } from './store.js';
 
 /** Columns that only the import of a tracker or of a probe understands. */
@@ -16,14 +18,37 @@ const kReadAs = [
   ['probe', 'touches of a probe'],
 ];
 
-function likely(preview) {
+/** Words above the names of points. */
+const kPointName = /^(name|point|punkt|punktname|id)$/i;
+
+/**
+ * The columns of points without positions of the axes, as a tracker writes them (Name, X, Y, Z) for a machine without axes of
+ * these names: [[column, {use, name, unit}]]; empty: not such a table.
+ */
+function pointsOfATracker(preview, axes) {
+  const named = (name) => axes.some((axis) => axis.name.toLowerCase() === name.toLowerCase());
+  const xyz = preview.columns.map((one, k) => [k, one]).filter(([, one]) => /^[xyz]$/i.test(one.name));
+  const rest = preview.columns.length - xyz.length;
+  if (!axes.length || preview.workbook || xyz.length !== 3 || rest > 2 || preview.columns.some((one) => named(one.name))) return [];
+  const names = preview.columns.map((one, k) => [k, one]).filter(([, one]) => kPointName.test(one.name));
+  return [
+    ...xyz.map(([k, one]) => [k, { use: 'column', name: one.name.toLowerCase(), unit: one.unit }]),
+    ...names.slice(0, 1).map(([k]) => [k, { use: 'column', name: 'point', unit: '' }]),
+  ];
+}
+
+function likely(preview, axes) {
   const names = preview.columns.map((one) => one.name);
   if (preview.workbook) return 'table';
+  if (pointsOfATracker(preview, axes).length) return 'tracker';
   if (names.filter((name) => kProbe.has(name)).length >= 3) return 'probe';
   return names.some((name) => kTracker.has(name)) ? 'tracker' : 'table';
 }
 
 const withUnit = (one) => `${one.name}${one.unit ? `[${one.unit}]` : ''}`;
+
+const kWhereItStood =
+  'Where did the machine stand at each point? In the field "nominal", choose the file of the project with the positions of the axes: one row for each point, with the names of the points or in the same order.';
 
 /** What the table of columns and the preview say; all other options of the import have fields. */
 const kInTable = ['file', 'output', 'column', 'deviation', 'leave', 'sheet', 'machine', 'point'];
@@ -151,7 +176,26 @@ export async function importSheet(box, name, handOver, asks = false) {
       why.message = onPage(why.message);
       throw why;
     });
-  const doImport = (preview) =>
+  /** Points that are no tool points of the machine file: the reflector is declared, and the points are read again. */
+  const offerReflector = (preview) => {
+    if (/press "A reflector/.test(error.textContent) && store.machine)
+      error.append(
+        button(
+          kReflector,
+          () =>
+            guarded(error, async () => {
+              await choose(await declareReflector(), store.measurements);
+              await doImport(preview);
+            }),
+          { id: 'import-reflector' },
+        ),
+      );
+  };
+  const doImport = async (preview) => {
+    await importNow(preview);
+    offerReflector(preview);
+  };
+  const importNow = (preview) =>
     guarded(error, async () => {
       const several = preview.sheets.length > 1;
       const output = freeName(`${name.replace(/\.[^.]*$/, '')}_${several && sheet ? inFileName(sheet) : 'read'}`, '.csv');
@@ -257,7 +301,7 @@ export async function importSheet(box, name, handOver, asks = false) {
     // A wrong word in a field of the table: the table stays, so that the word can be corrected.
     if (!now) return box.querySelector('#sheet-columns') ? null : refused();
     read = now;
-    kind ??= likely(now);
+    kind ??= likely(now, axes);
     const go = button('Import', () => doImport(now), { id: 'do-import' });
     gate(go, kind === 'table' && now.message !== null ? 'State what is missing first: the message above names it' : null);
     box.replaceChildren(
@@ -275,6 +319,9 @@ export async function importSheet(box, name, handOver, asks = false) {
         now.message ? el('div', { class: 'controls', id: 'sheet-confirmations' }, confirmations(now)) : null,
         now.points && kind === 'table' ? pointFields(now.points, points, () => draw()) : null,
         now.points ? null : byAxes(now),
+        kind === 'tracker' && axes.length && !now.columns.some((one) => axes.some((axis) => axis.name === one.name))
+          ? el('p', { class: 'note', id: 'where-it-stood' }, kWhereItStood)
+          : null,
         el(
           'div',
           { class: 'controls' },
@@ -326,7 +373,9 @@ export async function importSheet(box, name, handOver, asks = false) {
     box.replaceChildren(error);
     const first = await guarded(error, ask);
     if (!first) return refused();
-    kind = likely(first);
+    kind = likely(first, axes);
+    if (kind === 'tracker') for (const [k, one] of pointsOfATracker(first, axes)) said.set(k, one);
+    if (said.size) return draw();
     return first.message === null && kind === 'table' && !asks ? doImport(first) : draw(first);
   }
   // A machine that was chosen after the table was dropped has axes to compare with.
