@@ -196,7 +196,8 @@ class Diagnoser {
   /// with them, at the odds at which one file contradicts a step.
   std::optional<StepEvidence> confirmed_beside(const Proof& proof, std::size_t item) const {
     const ProofThresholds& limits = options_.thresholds.proof;
-    if (proof.expected >= limits.evidence || !pool_.candidate(item).choice.runs.empty() ||
+    if (proof.expected >= limits.evidence || pool_.is_custom(item) ||
+        !pool_.candidate(item).choice.runs.empty() ||
         proof.evidence < proof.expected - limits.loss_sigmas * std::sqrt(2 * proof.expected))
       return std::nullopt;
     const double together = proof.evidence + finder_.held_out_evidence(item);
