@@ -122,6 +122,19 @@ std::string step_between_runs_in_words() {
          "too, would explain the readings as well: measure again at the first value of the input.";
 }
 
+std::string drift_of_instrument_in_words() {
+  return " An instrument or its stand that drifts gives the same readings: measure again on another day "
+         "before "
+         "the machine is corrected by it.";
+}
+
+std::string most_remains_in_words(double before_um, double after_um) {
+  return fmt::format(
+      " Most of the residual remains ({:.3g} of {:.3g} um), and the readings have neither u nor repeats: the "
+      "diagnosis cannot tell whether the rest is the noise of the instrument or another error.",
+      after_um, before_um);
+}
+
 std::string reflector_in_words(const std::string& machine_file) {
   return fmt::format(
       " If the readings are those of a reflector at an unknown place on the tool, this offset is no error of "

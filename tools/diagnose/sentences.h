@@ -50,6 +50,13 @@ std::string aliases_in_words(const effects::Candidate& candidate, double period,
 /// the named effect of an input.
 std::string step_between_runs_in_words();
 
+/// Returns the sentence about an instrument that drifts as the named effect does.
+std::string drift_of_instrument_in_words();
+
+/// Returns the sentence about a residual (rms) that is mostly left beside the named effects and that no
+/// stated noise explains.
+std::string most_remains_in_words(double before_um, double after_um);
+
 /// Returns the sentence about an offset of the tool point that can be the place of a reflector on the tool,
 /// with the command that declares this place.
 std::string reflector_in_words(const std::string& machine_file);

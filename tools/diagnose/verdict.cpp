@@ -133,11 +133,8 @@ class Decision {
 
   std::string nothing_to_add() {
     if (!is_alone_in_noise()) return {};
-    // Without u and without repeats nothing states the noise: a residual of any size can be without
-    // structure.
-    const bool known = fit::has_uncertainty(found_.measurement) || fit::noise_um(found_.measurement) ||
-                       fit::noise_urad(found_.measurement);
-    if (known) return with_refused("The residual is noise: there is nothing to add.");
+    // A residual of any size can be without structure.
+    if (is_noise_stated()) return with_refused("The residual is noise: there is nothing to add.");
     const std::string nothing =
         "The residual has no structure that a candidate explains: there is nothing to add. ";
     if (fit::repeats_in_other_runs(found_.measurement))
@@ -410,7 +407,7 @@ class Decision {
     return cause_in_words(answer_.candidates.front(),
                           other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
                           other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size()) +
-           or_a_reflector() + or_a_step();
+           or_a_reflector() + or_a_step() + or_a_drift();
   }
 
   /// The same effect of two axes can have the same columns: a lag on a circle.
@@ -448,14 +445,34 @@ class Decision {
 
   std::string one_cause() {
     std::string text = said_of_cause() + only_the_difference();
-    if (!is_noise_) text += " The remaining residual is not noise." + where_left(answer_.left);
+    if (!is_noise_)
+      text += " The remaining residual is not noise." + where_left(answer_.left);
+    else
+      text += most_remains();
     return text + rest();
+  }
+
+  /// Without u and without repeats nothing states the noise: what the named effects leave can be another
+  /// error.
+  std::string most_remains() const {
+    constexpr double kMostIsLeft = 0.5;  // of the mean square
+    const fit::RoleStatistics &before = answer_.base.after, &after = answer_.end.after;
+    if (is_noise_stated() || !before.rms_um || !after.rms_um ||
+        *after.rms_um * *after.rms_um < kMostIsLeft * *before.rms_um * *before.rms_um)
+      return {};
+    return most_remains_in_words(*before.rms_um, *after.rms_um);
   }
 
   /// Sentences about the parts of the error that have no certain cause beside the named one.
   std::string rest() const { return open_steps_in_words(answer_.ladder) + rest_; }
 
   // What the rules need.
+
+  /// Do u or repeats state the noise of the readings?
+  bool is_noise_stated() const {
+    return fit::has_uncertainty(found_.measurement) || fit::noise_um(found_.measurement) ||
+           fit::noise_urad(found_.measurement);
+  }
 
   /// Is a change between the runs as good a cause as the accepted effect at this position?
   bool change_between_runs(std::size_t position) const {
@@ -468,6 +485,15 @@ class Decision {
     const bool step = step_between_runs_explains(finder_.evidence(), pool_, accepted_, 0,
                                                  found_.options.thresholds.acceptance.distance);
     return step ? step_between_runs_in_words() : "";
+  }
+
+  /// A shift of all poses with the time alone is the same for a machine and for its instrument.
+  std::string or_a_drift() const {
+    const auto drivers = drivers_of(finder_.evidence().machine(), pool_.candidate(accepted_.front()));
+    const bool time_alone = !drivers.empty() && std::ranges::all_of(drivers, [](const auto& driver) {
+      return static_cast<model::SymbolKind>(driver.first) == model::SymbolKind::kTime;
+    });
+    return time_alone ? drift_of_instrument_in_words() : "";
   }
 
   /// A later step with several causes is not certain: a cause that only fits as well need not fit at other

@@ -71,6 +71,38 @@ TEST(Gate, CheckRowsThatHardlySeeAStepDecideTogetherWithHeldOutRuns) {
   EXPECT_NE(many.verdict, Verdict::kMissingEffect);
 }
 
+/// One axis, read at 300 places without u and without repeats: a reversal, a drift (mm per hour) and noise,
+/// mm.
+Diagnosis without_u(double reversal, double drift, double noise_mm) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> noise(0, noise_mm);
+  std::uniform_real_distribution<double> place(0, 500);
+  std::string text = "X[mm],dirX,t[s],x[mm]\n";
+  for (int row = 0; row < 300; ++row) {
+    const double x = place(random), dir = (row / 3) % 2 == 0 ? 1 : -1, hours = row / 300.0;
+    text += fmt::format("{:.3f},{},{},{:.6f}\n", x, dir, 12 * row,
+                        x + dir * reversal + hours * drift + noise(random));
+  }
+  const Machine machine = parse_machine(kAxis, "m.xml");
+  return diagnose::diagnose(kAxis, machine, parse_measurement(text, "m.csv", machine));
+}
+
+TEST(Gate, WithoutUMostOfTheResidualIsNotPassedAsNoiseWithoutAWord) {
+  const Diagnosis small = without_u(0.001, 0, 0.002), large = without_u(0.005, 0, 0.002);
+  ASSERT_EQ(small.verdict, Verdict::kMissingEffect) << small.explanation;
+  EXPECT_NE(small.explanation.find("Most of the residual remains"), std::string::npos) << small.explanation;
+  EXPECT_EQ(large.verdict, Verdict::kMissingEffect);
+  EXPECT_EQ(large.explanation.find("Most of the residual remains"), std::string::npos) << large.explanation;
+}
+
+TEST(Gate, AShiftInTimeMayBeThatOfTheInstrument) {
+  const Diagnosis drift = without_u(0, 0.03, 0.002), none = without_u(0.005, 0, 0.002);
+  ASSERT_EQ(drift.verdict, Verdict::kMissingEffect) << drift.explanation;
+  EXPECT_NE(drift.explanation.find("stand that drifts gives the same readings"), std::string::npos)
+      << drift.explanation;
+  EXPECT_EQ(none.explanation.find("stand that drifts"), std::string::npos) << none.explanation;
+}
+
 TEST(Gate, AStepThatTheCheckRowsRefuseMakesRoomForAnother) {
   // The reason is stated beside the refused candidate.
   const Diagnosis many =

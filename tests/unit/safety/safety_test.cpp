@@ -206,6 +206,31 @@ TEST(SafetySheet, NamesEveryAxisThatWorksOutsideItsMeasuredRange) {
   EXPECT_NE(safety_sheet(fitted).refusal().find(culprit), std::string::npos);
 }
 
+/// The finding `input-range` of a machine whose X has a term in the time, fitted to an hour.
+SafetyFinding of_hour(const std::string& term) {
+  const std::string statics =
+      "<alpha value=\"0\" nominal=\"0\" unit=\"rad\"/><k value=\"0\" nominal=\"0\" unit=\"mm\"/>";
+  const Machine model = small_machine(statics, "", "X-alpha*Y+k*" + term);
+  Machine truth = model;
+  truth.statics[0].value = 5e-5, truth.statics[1].value = 0.02;
+  Measurement m = survey(model, model, 1e-3);
+  for (Eigen::Index row = 0; row < m.states.time.size(); ++row)
+    m.states.time[row] = 30 * static_cast<double>(row);
+  const Eigen::VectorXd error = predict(truth, m) - predict(model, m);
+  for (std::size_t i = 0; i < m.observations.size(); ++i)
+    m.observations[i].value += error[static_cast<Eigen::Index>(i)];
+  return finding(safety_sheet(fit::fit(model, m).machine), SafetyRule::kInputRange);
+}
+
+TEST(SafetySheet, RefusesACorrectionThatStillDriftsWithTheTime) {
+  const SafetyFinding drift = of_hour("(t/3600)"), warm_up = of_hour("(1-exp(-t/600))");
+  EXPECT_FALSE(drift.ok);
+  EXPECT_NEAR(*drift.value, (86400 - 3570) / 3570.0, 1e-6);
+  EXPECT_NE(drift.culprit.find("measured from 0 to 3570 s: the correction changes by"), std::string::npos)
+      << drift.culprit;
+  EXPECT_TRUE(warm_up.ok) << "it ended within the hour: " << warm_up.culprit;
+}
+
 TEST(SafetySheet, JudgesEveryDeclaredTool) {
   const std::string statics = "<alpha value=\"0\" nominal=\"0\" unit=\"rad\"/>";
   const std::string tables =
