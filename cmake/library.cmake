@@ -7,7 +7,7 @@ function(vernier_unity target)
 endfunction()
 
 # Rooms that read, write and print, and nothing that a measurement waits for: an optimiser costs more there than it saves.
-set(VERNIER_ROOMS_OF_GLUE create lint exchange evaluate report results upload workbench fleet commands python)
+set(VERNIER_ROOMS_OF_GLUE create import lint exchange evaluate report results upload workbench fleet commands python)
 # Under sanitizers an object costs half without an optimiser (measured with clang 14: diagnose 15.8 s of 39.4). Only where tests multiply
 # matrices and walk records, it earns that back: ControllerFiles.* take 1000 s without.
 set(VERNIER_ROOMS_OF_NUMBERS comp firmware maths model fit kinematics vibration timebase tolerance)

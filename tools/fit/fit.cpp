@@ -216,7 +216,7 @@ bool find_disturbance(const FitResult& result, const model::Measurement& rows, c
     record.disturbed = mm / result.misfit_mm;
     record.disturbance = std::move(words);
   };
-  const NoiseUnit unit = noise_unit(all);
+  const NoiseUnit unit = noise_unit(rows);
   for (const NoiseStep& step : result.noise.steps) {
     const auto kind = static_cast<model::ObservationKind>(step.kind);
     if (model::is_rotation(kind)) continue;
@@ -536,17 +536,15 @@ std::optional<FittedAlone> fitted_alone(const model::Machine& machine, const mod
   return std::nullopt;
 }
 
-/// Writes the noise of a fit with other weights in units of the stated u.
-void in_stated_units(Settled& end, const model::Measurement& stated, const model::Measurement& weighed) {
-  const NoiseUnit before = noise_unit(weighed), after = noise_unit(stated);
-  const double times = before.angles_only ? before.arcsec / after.arcsec : before.um / after.um;
-  for (double* const size : {&end.noise.own, &end.noise.pose, &end.noise.run, &end.noise.drift})
-    *size *= times;
-  for (NoiseStep& step : end.noise.steps) {
-    step.height *= times;
-    step.std *= times;
-    step.unit /= times;
-  }
+/// The noise model of the readings over their stated u at the end of a fit with other weights: a step or a
+/// drift in the readings of one file is as large as it is, whatever weight the file has.
+NoiseModel noise_over_stated_u(const FitResult& result, const model::Machine& machine,
+                               const model::Measurement& rows, const Solution& solution,
+                               const Convention& convention, const StatedPriors& stated) {
+  FitProblem problem(machine, rows, result.parameters);
+  problem.hold_unseen(convention.unseen);
+  return describe(problem, solution.end.point, convention, stated, solution.readings, true, std::nullopt)
+      .noise;
 }
 
 }  // namespace
@@ -564,7 +562,7 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
         "the measurement has no reading with role fit; give at least some rows the role fit");
   result.noise_um = noise_um(measurement);
   const std::vector<std::size_t> kept = kept_for_fit(machine, measurement);
-  model::Measurement rows =
+  const model::Measurement rows =
       kept.size() == measurement.rows() ? measurement : model::select_rows(measurement, kept);
   Convention convention = convention_of(machine, rows, result.parameters);
   result.misfit_mm = convention.misfit_mm;
@@ -578,9 +576,8 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
         file_factors(measurement, [&](const model::Measurement& own) { return fitted_alone(machine, own); });
   if (!result.file_factors.empty()) {
     weighed = with_factors(measurement, result.file_factors);
-    rows = model::select_rows(weighed, kept);
-    solution = solved(result, machine, rows, convention, stated, options);
-    in_stated_units(solution.end, measurement, weighed);
+    solution = solved(result, machine, model::select_rows(weighed, kept), convention, stated, options);
+    solution.end.noise = noise_over_stated_u(result, machine, rows, solution, convention, stated);
   }
   Settled& end = solution.end;
   const std::size_t readings = solution.readings;

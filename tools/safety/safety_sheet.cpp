@@ -12,7 +12,6 @@
 
 #include "tools/fit/coverage/reach.h"
 #include "tools/fit/fit.h"
-#include "tools/format/columns.h"
 #include "tools/kinematics/correction.h"
 #include "tools/kinematics/jacobian.h"
 #include "tools/maths/decompositions.h"
@@ -288,13 +287,14 @@ class Judge {
   void add_outside_time(std::vector<Outside>& list) const {
     constexpr double kDay_s = 86400, kStillChanges = 0.25;  // of the change within the measured time
     constexpr double kNothing_mm = 1e-4;                    // as in judge_cancellation()
-    if (!acts(machine_, {model::SymbolKind::kTime, 0})) return;
+    const model::Symbol time{model::SymbolKind::kTime, 0};
+    if (!acts(machine_, time)) return;
     for (const model::FitRecord::Range& measured : machine_.fitted->measured) {
-      if (measured.name != format::columns::kTime) continue;
+      if (measured.name != model::symbol_name(machine_, time)) continue;
       const double length = measured.max - measured.min;
-      const auto at = [&](double time) {
+      const auto at = [&](double seconds) {
         model::States states = poses_.states;
-        states.time.setConstant(time);
+        states.time.setConstant(seconds);
         return model::deviation(machine_, states);
       };
       const auto apart_mm = [&](double from, double to) {

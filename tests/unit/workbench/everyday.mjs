@@ -109,7 +109,7 @@ async function accepted(page) {
   await page.drop([made('long.xml')]);
   await chosen(page, 'long.xml');
   await view(page, 'board');
-  await words(page, '#safety-words', 'mark "measured-range", "disturbed", "uncertainty" in the field "accept"');
+  await words(page, '#safety-words', 'mark "measured-range", "uncertainty", "disturbed" in the field "accept"');
   assert.ok((await text(page, '#safety-words')).startsWith('Not safe to run: measured-range'), 'said once');
   assert.ok(!(await text(page, '#safety-words')).includes('--accept'));
   await page.click('#compile');
