@@ -109,9 +109,15 @@ TEST(NominalList, JointsMayHaveTheirUsualNames) {
   EXPECT_THAT(measurement_csv(joined.table),
               testing::StartsWith(
                   "joint_1[deg],joint_2[deg],joint_3[deg],point,x[mm],y[mm],z[mm]\n0,0,0,A::Vol::P1,"));
-  EXPECT_THROW(with_nominal(table, "Punkt;A1;A2;A3\nP1;0;0;0\nP2;10;20;30\nP3;20;5;9\nP4;-5;6;70\n",
+  EXPECT_EQ(joined.note, "");
+  const NominalTable degrees = with_nominal(
+      table, "Punkt;A1;A2;A3\nP1;0;0;0\nP2;10;20;30\nP3;20;5;9\nP4;-5;6;70\n", "nom.csv", machine, 1e6);
+  EXPECT_EQ(measurement_csv(degrees.table), measurement_csv(joined.table));
+  EXPECT_THAT(degrees.note, testing::HasSubstr("(A1 ...) have no unit: they are read in degrees"));
+  // These can be radians or degrees.
+  EXPECT_THROW(with_nominal(table, "Punkt;A1;A2;A3\nP1;0;0;0\nP2;1;0.2;0.3\nP3;2;0.5;0.9\nP4;-0.5;0.6;1.7\n",
                             "nom.csv", machine, 1e6),
-               text::InputError);  // without units
+               text::InputError);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ struct SurveyArguments {
 };
 
 /// The map file first, then the command line, which overrides it.
-importer::ColumnMap map_of(const SurveyArguments& arguments, const CLI::App& kind) {
+importer::ColumnMap map_of(const SurveyArguments& arguments, const std::string& text, const CLI::App& kind) {
   importer::ColumnMap map;
   if (!arguments.map.empty()) importer::read_column_map(map, text::read_file(arguments.map), arguments.map);
   for (const std::string& words : arguments.columns) importer::add_column(map, words);
@@ -44,8 +44,11 @@ importer::ColumnMap map_of(const SurveyArguments& arguments, const CLI::App& kin
   if (kind.count("--comment") > 0) map.format.comment = arguments.comment == "none" ? "" : arguments.comment;
   if (kind.count("--skip") > 0) map.format.skip = arguments.skip;
   if (arguments.header) map.format.header = true;
-  if (map.columns.empty())
-    throw text::InputError("no column has a meaning: give --map FILE or --column \"3=x[mm]\"");
+  if (map.columns.empty()) {
+    const std::string words = importer::columns_to_try(text, arguments.file, map.format);
+    throw text::InputError("no column has a meaning: give --map FILE or " +
+                           (words.empty() ? "--column \"3=x[mm]\"" : words.substr(1)));
+  }
   return map;
 }
 
@@ -104,6 +107,7 @@ void print_joined(std::FILE* out, const importer::NominalTable& joined, const st
     fmt::print(out, "; rms distance of the points from the positions of the nominal machine: {:.3g} mm",
                *joined.rms_mm);
   fmt::print(out, "\n");
+  if (!joined.note.empty()) fmt::print(out, "{}\n", joined.note);
   if (joined.unused > 0) fmt::print(out, "{} positions of {} have no point\n", joined.unused, list);
 }
 
@@ -143,8 +147,8 @@ void write_survey(const std::string& kind, const SurveyArguments& arguments, con
 void run_survey(const std::string& kind_name, const SurveyArguments& arguments, const CLI::App& kind) {
   Survey survey;
   importer::ImportTable& table = survey.table;
-  table = importer::mapped_table(sheet::utf8_text(text::read_file(arguments.file)), arguments.file,
-                                 map_of(arguments, kind));
+  const std::string text = sheet::utf8_text(text::read_file(arguments.file));
+  table = importer::mapped_table(text, arguments.file, map_of(arguments, text, kind));
   if (kind_name == "tracker")
     importer::finish_tracker(table);
   else if (kind_name == "camera")

@@ -115,8 +115,9 @@ void refuse_another_unit(const DelimitedFile& file, std::size_t index, const Map
           heading.unit, column.name, column.unit));
 }
 
+/// may_be_heading: the cell is in the first line of a table that was read without headings.
 std::string cell_of(const std::string& text, const MappedColumn& column, bool decimal_comma,
-                    const text::Place& place) {
+                    bool may_be_heading, const text::Place& place) {
   if (column.name == format::columns::kRole && !text.empty() && !format::is_role(text))
     throw text::InputError(place, text, format::kRoleRule);
   if (is_word(column.name) || text.empty()) return text;
@@ -126,7 +127,8 @@ std::string cell_of(const std::string& text, const MappedColumn& column, bool de
                            "not a number, for " + column.name +
                                (!decimal_comma && number_cell(text, true)
                                     ? "; if the table has a decimal comma, give --decimal comma"
-                                    : ""));
+                                : may_be_heading ? "; if this line has the headings, give --header"
+                                                 : ""));
   return *number;
 }
 
@@ -224,6 +226,34 @@ void ImportTable::add(const std::string& name, const std::string& unit, const st
   columns.push_back(std::move(column));
 }
 
+std::string columns_to_try(const std::string& text, const std::string& file, const DelimitedFormat& format) {
+  const DelimitedFile read = parse_delimited(text, file, format);
+  const std::vector<std::string>& first = read.header.empty() ? read.rows.front() : read.header;
+  if (read.rows.size() < 2) return {};
+  const std::vector<std::string>& second = read.rows[read.header.empty() ? 1 : 0];
+  const auto is_number = [](const std::string& cell) {
+    return number_cell(cell, false) || number_cell(cell, true);
+  };
+  if (std::any_of(first.begin(), first.end(), is_number)) return {};  // no headings
+  std::string words;
+  bool comma = false;
+  std::size_t coordinates = 0;
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    const sheet::Heading heading = sheet::parse_heading(first[k]);
+    const std::string small = text::in_small_letters(heading.name);
+    if (k == 0 && !is_number(second[k])) {
+      words += fmt::format(" --column \"{}=point\"", first[k]);
+    } else if (small == "x" || small == "y" || small == "z") {
+      words +=
+          fmt::format(" --column \"{}={}[{}]\"", first[k], small, heading.unit.empty() ? "mm" : heading.unit);
+      comma = comma || !number_cell(second[k], false);
+      ++coordinates;
+    }
+  }
+  constexpr std::size_t kOfPoint = 3;
+  return coordinates == kOfPoint ? words + (comma ? " --decimal comma" : "") : "";
+}
+
 ImportTable mapped_table(const std::string& text, const std::string& file, const ColumnMap& map) {
   DelimitedFormat format = map.format;
   for (const MappedColumn& column : map.columns)
@@ -238,9 +268,10 @@ ImportTable mapped_table(const std::string& text, const std::string& file, const
     const bool names = holds_names(read, column, index);
     const std::string same = constant ? constant_cell(column, format.decimal_comma) : "";
     for (std::size_t i = 0; i < read.rows.size(); ++i)
-      cells.cells.push_back(names ? read.rows[i][index]
-                                  : cell_of(constant ? same : read.rows[i][index], column,
-                                            !constant && format.decimal_comma, {file, read.line[i]}));
+      cells.cells.push_back(
+          names ? read.rows[i][index]
+                : cell_of(constant ? same : read.rows[i][index], column, !constant && format.decimal_comma,
+                          !constant && i == 0 && read.header.empty(), {file, read.line[i]}));
     table.columns.push_back(std::move(cells));
   }
   return table;

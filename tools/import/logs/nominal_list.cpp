@@ -28,6 +28,7 @@ constexpr const char* kPointTwice = "the list of nominal positions has this poin
 struct List {
   SheetReading reading;
   std::vector<std::size_t> rows;  // rows that are not blank
+  std::string note;               // what was assumed; empty: nothing
 
   const std::string& cell(std::size_t i, std::size_t column) const {
     return reading.sheet.rows[rows[i]][column];
@@ -36,23 +37,55 @@ struct List {
   text::Place heading() const { return {reading.sheet.file, reading.sheet.line[reading.table.heading_row]}; }
 };
 
-/// Gives the columns of a robot's joints under their usual names (A1, J1, q1) the names of the axes, with a
-/// note, as the import of a table does. `reading`: without these columns it has no axis of the machine.
-void take_joints(SheetReading& reading, const model::Machine& machine) {
+/// True if the numbers of a column without a unit can only be degrees: one of them is more than a turn in
+/// radians.
+bool must_be_degrees(const List& list, std::size_t column) {
+  constexpr double kTurn_rad = 6.2832;
+  double most = 0;
+  for (std::size_t i = 0; i < list.rows.size(); ++i) {
+    const auto number = sheet::number_at(list.reading.sheet, list.rows[i], column);
+    if (!number) return false;
+    most = std::max(most, std::abs(*number));
+  }
+  return most > kTurn_rad;
+}
+
+/// Gives the columns of a robot's joints under their usual names (A1, J1, q1) the names of the axes, as the
+/// import of a table does. Joints of which no heading has a unit are in degrees if one of them must be, with
+/// a note: the distances of the points show a mistake.
+void take_joints(List& list, const model::Machine& machine) {
+  SheetReading& reading = list.reading;
   std::vector<MissingAxis> axes;
   for (const model::Axis& axis : machine.axes)
-    if (std::none_of(reading.columns.begin(), reading.columns.end(),
-                     [&](const SheetColumn& one) { return one.name == axis.name; }))
+    if (std::none_of(reading.columns.begin(), reading.columns.end(), [&](const SheetColumn& one) {
+          return one.name == axis.name && !(axis.rotary && one.unit.empty());
+        }))
       axes.push_back({axis.name, axis.rotary});
-  std::vector<FreeColumn> columns;
+  std::vector<FreeColumn> columns, in_degrees;
   std::vector<std::size_t> at;
   for (std::size_t k = 0; k < reading.columns.size(); ++k) {
     const SheetColumn& column = reading.columns[k];
-    if (column.use != SheetColumn::Use::kColumn || column.words || machine.find_axis(column.name)) continue;
+    const auto axis = machine.find_axis(column.name);
+    if (column.use != SheetColumn::Use::kColumn || column.words || (axis && !column.unit.empty())) continue;
     columns.push_back({reading.table.headings[k].text, reading.table.headings[k].name, column.unit});
+    in_degrees.push_back(columns.back());
+    if (column.unit.empty()) in_degrees.back().unit = "deg";
     at.push_back(k);
   }
-  const JointColumns found = joint_columns(axes, columns);
+  JointColumns found = joint_columns(axes, columns);
+  const bool states_no_unit = std::all_of(columns.begin(), columns.end(), [](const FreeColumn& one) {
+    return one.unit.empty() || format::find_unit(one.unit)->dimension != format::Dimension::kAngle;
+  });
+  if (!found.sure && states_no_unit) {
+    found = joint_columns(axes, in_degrees);
+    if (!found.sure || std::none_of(found.pairs.begin(), found.pairs.end(),
+                                    [&](const auto& pair) { return must_be_degrees(list, at[pair.column]); }))
+      return;
+    for (const JointColumns::Pair& pair : found.pairs)
+      if (reading.columns[at[pair.column]].unit.empty()) reading.columns[at[pair.column]].unit = "deg";
+    list.note = fmt::format("{}: the columns of the joints ({} ...) have no unit: they are read in degrees",
+                            reading.sheet.file, columns[found.pairs.front().column].heading);
+  }
   if (!found.sure) return;
   for (const JointColumns::Pair& pair : found.pairs)
     reading.columns[at[pair.column]].name = axes[pair.axis].name;
@@ -61,11 +94,11 @@ void take_joints(SheetReading& reading, const model::Machine& machine) {
 List read_list(const std::string& bytes, const std::string& file, const model::Machine& machine) {
   SheetWords words;
   for (const model::Axis& axis : machine.axes) words.axes.push_back(axis.name);
-  List list{read_as_sheet(bytes, file, words), {}};
-  take_joints(list.reading, machine);
+  List list{read_as_sheet(bytes, file, words), {}, {}};
   const sheet::Sheet& sheet = list.reading.sheet;
   for (std::size_t row = list.reading.table.first_data; row < sheet.rows.size(); ++row)
     if (!sheet::is_blank(sheet.rows[row])) list.rows.push_back(row);
+  take_joints(list, machine);
   return list;
 }
 
@@ -245,6 +278,7 @@ NominalTable with_nominal(const ImportTable& points, const std::string& bytes, c
                           const model::Machine& machine, double tolerance_mm) {
   const List list = read_list(bytes, file, machine);
   NominalTable result;
+  result.note = list.note;
   std::vector<std::size_t> rows = rows_by_name(points, list, result.names);
   if (result.names.empty()) rows = rows_by_number(points, list);
   std::vector<std::size_t> used = rows;

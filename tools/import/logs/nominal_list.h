@@ -15,6 +15,7 @@ struct NominalTable {
   ImportTable table;
   std::string names;             // column of point names that joined both; empty: joined by row number
   std::size_t unused = 0;        // number of positions of the list without a point
+  std::string note;              // what was assumed about the list; empty: nothing
   std::optional<double> rms_mm;  // rms distance of the points from the nominal tool points, after the best
                                  // rigid motion; nullopt: too few points, or no x y z
 };
@@ -23,10 +24,11 @@ struct NominalTable {
 /// heading and a unit for each axis of the machine ("Punkt;X [mm];Y [mm]"). If both have a column with the
 /// names of the points, the rows are joined by name; of a name "A::Vol::P1" the last part is compared.
 /// Otherwise row n belongs to point n, and both must have the same number of rows. `tolerance_mm`: permitted
-/// difference of a distance, machine against nominal machine, mm. Throws InputError with file, line and word
-/// for: a missing axis or unit, a name that is missing or occurs twice in the list, different numbers of
-/// rows, and a point that is farther than 3 tolerances from its nominal tool point after the best rigid
-/// motion (a list in another order).
+/// difference of a distance, machine against nominal machine, mm. The joints of a robot may have their usual
+/// names (A1, J1, q1); without any unit they are in degrees if a value is more than a turn in radians. Throws
+/// InputError with file, line and word for: a missing axis or unit, a name that is missing or occurs twice in
+/// the list, different numbers of rows, and a point that is farther than 3 tolerances from its nominal tool
+/// point after the best rigid motion (a list in another order).
 NominalTable with_nominal(const ImportTable& points, const std::string& bytes, const std::string& file,
                           const model::Machine& machine, double tolerance_mm);
 
