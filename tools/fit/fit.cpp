@@ -503,7 +503,7 @@ Solution solved(FitResult& result, const model::Machine& machine, const model::M
     const Eigen::VectorXd near = solve(problem, machine, convention, stated, options, result);
     solution.end =
         squared ? settle(problem, near, convention, stated, solution.readings, with_u, options.noise,
-                         !result.file_factors.empty())
+                         rows.files.size() > 1)
                 : describe(problem, near, convention, stated, solution.readings, with_u, options.noise);
     result.iterations += squared ? solution.end.iterations : 0;
     result.converged = result.converged && (!squared || solution.end.converged);

@@ -67,9 +67,9 @@ VectorXd solution_of(const MatrixXd& matrix, const VectorXd& right) {
 class Settler {
  public:
   Settler(FitProblem& problem, const Convention& convention, const StatedPriors& stated,
-          std::size_t observations, bool with_u, const std::optional<NoiseModel>& noise, bool files_differ)
+          std::size_t observations, bool with_u, const std::optional<NoiseModel>& noise, bool of_files)
       : problem_(problem),
-        files_differ_(files_differ),
+        of_files_(of_files),
         noise_(noise),
         convention_(convention),
         stated_(stated),
@@ -299,12 +299,12 @@ class Settler {
   /// `data`, and gain * data = I - left, because the inverse of data + weak times data is I - once.
   MatrixXd covariance_from_readings(const MatrixXd& data, const MatrixXd& gain, const MatrixXd& left) {
     const std::optional<MatrixXd> correlated = readings_covariance(data);
-    if (correlated && !files_differ_) return gain * *correlated * gain.transpose();
+    if (correlated && !of_files_) return gain * *correlated * gain.transpose();
     const MatrixXd half = gain - gain * left.transpose();
     const MatrixXd independent = 0.5 * result_.variance * (half + half.transpose());
     if (!correlated) return independent;
-    // The correlation is that of the file that the model describes badly. It must not make an estimate from
-    // another file more certain.
+    // The correlation can be that of one file, which the model describes badly. It must not make an estimate
+    // from another file more certain.
     const MatrixXd common = gain * *correlated * gain.transpose();
     VectorXd larger = VectorXd::Ones(common.rows());
     for (Index i = 0; i < larger.size(); ++i)
@@ -356,7 +356,7 @@ class Settler {
   }
 
   FitProblem& problem_;
-  const bool files_differ_;
+  const bool of_files_;
   const std::optional<NoiseModel>& noise_;
   const Convention& convention_;
   const StatedPriors& stated_;
@@ -373,8 +373,8 @@ class Settler {
 
 Settled settle(FitProblem& problem, const VectorXd& point, const Convention& convention,
                const StatedPriors& stated, std::size_t observations, bool with_u,
-               const std::optional<NoiseModel>& noise, bool files_differ) {
-  return Settler(problem, convention, stated, observations, with_u, noise, files_differ).run(point);
+               const std::optional<NoiseModel>& noise, bool of_files) {
+  return Settler(problem, convention, stated, observations, with_u, noise, of_files).run(point);
 }
 
 Settled describe(FitProblem& problem, const VectorXd& point, const Convention& convention,

@@ -48,12 +48,12 @@ struct Settled {
 /// determine a value to a fifth of its scale, the second pass moves this value by less than 1 % of its
 /// standard deviation. The fitted result converges to the rounding error. `with_u`: true if the weights of
 /// the readings are 1 / u. `noise`: noise model for the covariance; nullopt: the noise model is estimated
-/// from the residual. The fitted parameter values are computed for independent readings. `files_differ`: true
-/// if the weights contain a factor of each file; no standard uncertainty is then below that of independent
-/// readings.
+/// from the residual. The fitted parameter values are computed for independent readings. `of_files`: true if
+/// the readings are of several files. The correlation of the errors can be that of one of them, so no
+/// standard uncertainty is then below that of independent readings.
 Settled settle(FitProblem& problem, const Eigen::VectorXd& point, const Convention& convention,
                const StatedPriors& stated, std::size_t observations, bool with_u,
-               const std::optional<NoiseModel>& noise, bool files_differ);
+               const std::optional<NoiseModel>& noise, bool of_files);
 
 /// Returns the result of settle() for a point that another solver found (robust losses). describe() does not
 /// move this point.

@@ -289,6 +289,20 @@ TEST(FileFactors, AnErrorInOneFileTakesNoWeightFromTheOthers) {
   }
 }
 
+TEST(FileFactors, TheShapeOfOneFileMakesNoEstimateOfAnotherMoreCertain) {
+  std::mt19937_64 random(20261141);
+  const std::string square = tracker(random, 12, 1, ",u[um],setup", ",6,tracker");
+  const ParameterEstimate alone = squareness_of(fit::fit(machine(), all_of({{"square.csv", square}})));
+  std::string bed = bowed(random, 1);  // without u: its noise is what the model leaves
+  for (const std::string u : {",u[um]", ",0.5"})
+    for (std::size_t at = bed.find(u); at != std::string::npos; at = bed.find(u)) bed.erase(at, u.size());
+  Measurement rows = all_of({{"square.csv", square}, {"bed.csv", bed}});
+  ASSERT_EQ(estimate_file_noise(machine(), rows).size(), 1u);
+  const FitResult together = fit::fit(machine(), rows);
+  EXPECT_FALSE(together.noise.independent()) << "the bow looks like a drift";
+  EXPECT_GT(squareness_of(together).std, 0.95 * alone.std);
+}
+
 TEST(FileFactors, FilesThatTheModelDescribesAlikeKeepTheStatedU) {
   std::mt19937_64 random(20261139);
   const std::string square = tracker(random, 30, 1, ",u[um],setup", ",6,tracker");
