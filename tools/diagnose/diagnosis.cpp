@@ -185,18 +185,23 @@ class Diagnoser {
     // A step of one run does not apply to another run. It is sufficient that rows of other runs
     // become worse with it.
     if (!pool_.candidate(item).choice.runs.empty() && proof.evidence < 0) return std::nullopt;
+    // Every run has the same targets, so no run refutes a period that was the best of many at these targets.
+    if (is_searched(item) && proof.evidence < 0) return std::nullopt;
     if (proof.evidence >= limits.evidence) return StepEvidence{proof.evidence, true};
     const double held_out = finder_.held_out_evidence(item);
     if (held_out < limits.evidence) return std::nullopt;
     return StepEvidence{held_out, false};
   }
 
+  /// True if a period or another shape of the effect was the best of a scan.
+  bool is_searched(std::size_t item) const { return !pool_[item].scored.scanned.empty(); }
+
   /// Check rows that the effect hardly changes (those of a tracker beside a laser that shows a backlash of
   /// two of its u) can be against a true effect by chance. The runs held out in turn then decide together
   /// with them, at the odds at which one file contradicts a step.
   std::optional<StepEvidence> confirmed_beside(const Proof& proof, std::size_t item) const {
     const ProofThresholds& limits = options_.thresholds.proof;
-    if (proof.expected >= limits.evidence || pool_.is_custom(item) ||
+    if (proof.expected >= limits.evidence || pool_.is_custom(item) || is_searched(item) ||
         !pool_.candidate(item).choice.runs.empty() ||
         proof.evidence < proof.expected - limits.loss_sigmas * std::sqrt(2 * proof.expected))
       return std::nullopt;
