@@ -570,15 +570,16 @@ FitResult fit(const model::Machine& machine, const model::Measurement& measureme
   result.only_set_up = with_only_set_up(result, machine, convention.centre, measurement);
   const StatedPriors stated = stated_priors(result, options, convention);
   Solution solution = solved(result, machine, rows, convention, stated, options);
-  model::Measurement weighed = measurement;
+  std::optional<model::Measurement> with_other_u;
   if (may_differ_by_file(solution.end, measurement, options))
     result.file_factors =
         file_factors(measurement, [&](const model::Measurement& own) { return fitted_alone(machine, own); });
   if (!result.file_factors.empty()) {
-    weighed = with_factors(measurement, result.file_factors);
-    solution = solved(result, machine, model::select_rows(weighed, kept), convention, stated, options);
+    with_other_u = with_factors(measurement, result.file_factors);
+    solution = solved(result, machine, model::select_rows(*with_other_u, kept), convention, stated, options);
     solution.end.noise = noise_over_stated_u(result, machine, rows, solution, convention, stated);
   }
+  const model::Measurement& weighed = with_other_u ? *with_other_u : measurement;
   Settled& end = solution.end;
   const std::size_t readings = solution.readings;
   // Steps were found among the rows of the fit, and are stated by the rows of the files.
