@@ -178,6 +178,11 @@ TEST_F(ProbedBed, ASquarenessThatNoReadingDeterminesHasNoSizeInTheExport) {
           "&& vernier fit g.xml bed.csv -o g.xml"),
       0)
       << said;
+  ASSERT_EQ(run("vernier export klipper g.xml -o json --touches bed.csv --json out.json"), 0) << said;
+  const auto left = nlohmann::json::parse(text::read_file(folder + "/out.json"))["left_out"];
+  for (const auto& one : left)
+    EXPECT_EQ(one["um"].is_null(), one["what"].get<std::string>().starts_with("squareness")) << one;
+  ASSERT_FALSE(left.empty());
   ASSERT_EQ(run("vernier export klipper g.xml -o out --touches bed.csv"), 0) << said;
   EXPECT_THAT(said, HasSubstr("left out: squareness XY: the readings of the last fit do not determine it"));
   EXPECT_THAT(said, HasSubstr("the files do not contain it: size unknown"));

@@ -59,7 +59,9 @@ void finish(const model::Machine& machine, const ExchangeArguments& arguments, c
             const std::vector<exchange::LeftOut>& left_out, const Json& files,
             const std::vector<AxisLines>& axes, bool exported, const Json& extra) {
   Json left = Json::array();
-  for (const exchange::LeftOut& one : left_out) left.push_back({{"what", one.what}, {"um", one.um}});
+  // A plausible size of an error that nobody measured is no number for a program or a page.
+  for (const exchange::LeftOut& one : left_out)
+    left.push_back({{"what", one.what}, {"um", one.measured ? Json(one.um) : Json(nullptr)}});
   Json json = {{"format", format}, {"files", files}, {"left_out", left}};
   for (const AxisLines& one : axes)
     json["axes"][one.axis] = {{"lines", one.lines}, {"worst_um", one.worst_um}, {"probed", one.probed}};
