@@ -14,6 +14,7 @@
 #include "tools/fit/coverage/bow_of_plane.h"
 #include "tools/fit/coverage/reading_direction.h"
 #include "tools/fit/least_squares/statistics.h"
+#include "tools/fit/noise/contradicting_rows.h"
 #include "tools/fit/sanity.h"
 #include "tools/fit/size.h"
 #include "tools/format/columns.h"
@@ -383,6 +384,8 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   add_computed_positions(result, m, list);
   add_axes_that_stood(result.machine, record, list);
   add_rows_outside_travel(result.machine, m, list);
+  if (const auto rows = contradicting_rows(m); !rows.empty())
+    list.push_back({"contradicting-rows", rows.front().apart_um, contradiction_in_words(m, rows)});
   const Vector3d lack_um(1e3 * record.discrepancy_mm[0], 1e3 * record.discrepancy_mm[1],
                          1e3 * record.discrepancy_mm[2]);
   if (lack_um.maxCoeff() > 0) {

@@ -24,6 +24,7 @@ Eigen::Vector3d model_discrepancy(const FitResult& result, const model::Measurem
 /// the findings: `something-missing` (value: residual over noise), `noise-unknown` (the readings have neither
 /// u nor repeats), `no-gain` (check rows against the nominal machine), `disturbed` (size of a disturbance of
 /// the survey, such as a step of the instrument, divided by the residual of the nominal machine),
+/// `contradicting-rows` (largest distance of two points measured at one pose, um),
 /// `check-not-independent` (share of the check rows at poses of fit rows), `not-varied` (number of
 /// dependences), `not-distinguished` (number of alternatives), `absurd`, `not-converged`, `size-unknown` (no
 /// reading has a known length; value: the plausible share), `taken-as-exact` (a length that gives the machine

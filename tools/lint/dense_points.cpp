@@ -93,11 +93,12 @@ std::vector<DensePoints> dense_points(const model::Machine& machine,
       if (!before && !behind) stations.push_back(table.stations[k].loc);
     }
     const model::Axis& axis = machine.axes[table.axis];
-    DensePoints one{axis.name,       axis.rotary ? "deg" : "mm", at.size(),
-                    median_step(at), median_step(stations),      0};
+    DensePoints one{
+        axis.name, axis.rotary ? "deg" : "mm", at.size(), median_step(at), median_step(stations), 0, false};
     if (!(one.station_spacing > kTimes * one.spacing)) continue;
     const double least = (at.back() - at.front()) / kMostParts;
     const auto columns = static_cast<std::size_t>(std::count(table.free.begin(), table.free.end(), true));
+    one.one_column = columns > 1 && line.readings == line.rows;
     const double enough = step_with_enough_readings(line, one.spacing, columns);
     one.step = std::max(enough, one.spacing >= least ? one.spacing : std::ceil(least));
     // Stations that are hardly denser change nothing.
@@ -115,10 +116,19 @@ std::string dense_points_text(const DensePoints& points) {
 }
 
 std::string dense_points_remedy(const DensePoints& points) {
-  return fmt::format(
+  std::string words = fmt::format(
       "the curve between two stations remains in the residual, where it can look like a cyclic error; make "
       "the machine file with --stations {}={:.4g} (vernier new), or add stations to the table",
       points.axis, points.step);
+  // A simulated mill, a laser along X in steps of 60 mm and 176 points of a tracker (u = 4 um): with stations
+  // 60 mm apart instead of 200 mm 0.25 um worse, 0.06 um worse and 0.06 um better (three seeds; the rms of
+  // the check rows says which); with 1400 points, or points without noise, better by 0.04 to 0.17 um.
+  if (points.one_column)
+    words +=
+        ". This line measures one column of the table only: the other rows must determine the other columns "
+        "at all stations, and their noise can cost more than the curve. Fit with both machine files, and "
+        "keep the dense stations only if the rms of the check rows is smaller with them";
+  return words;
 }
 
 }  // namespace vernier::lint

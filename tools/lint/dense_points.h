@@ -15,6 +15,7 @@ struct DensePoints {
   double spacing = 0;          // median distance of neighbouring positions
   double station_spacing = 0;  // median distance of the stations in the measured range
   double step = 0;             // proposed distance of the stations
+  bool one_column = false;     // true: the line measures one of several columns of the table (a laser)
 };
 
 /// Finds tables whose stations are more than three times as far apart as the points of a survey. The curve

@@ -30,6 +30,16 @@ std::string in_one_line(const LintFinding& finding) {
   return text::shown_message(finding.meaning.empty() ? line : line + " -- " + finding.meaning);
 }
 
+nlohmann::ordered_json finding_json(const LintFinding& finding) {
+  using Json = nlohmann::ordered_json;
+  return {{"file", finding.file},
+          {"line", finding.line > 0 ? Json(finding.line) : Json(nullptr)},
+          {"weight", weight_name(finding.weight)},
+          {"word", finding.word},
+          {"what", finding.what},
+          {"meaning", finding.meaning}};
+}
+
 void LintFindings::add(LintWeight weight, std::size_t line, const std::string& word, const std::string& what,
                        const std::string& meaning) {
   entries_.push_back({{file_, line, weight, word, what, meaning}, "", 0, 0});

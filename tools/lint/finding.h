@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct LintFinding {
 
 /// Returns a finding as one line of text: "file:12: error: "word": what (meaning)".
 std::string in_one_line(const LintFinding& finding);
+/// Returns a finding as JSON: {file, line (null: the whole file), weight, word, what, meaning}.
+nlohmann::ordered_json finding_json(const LintFinding& finding);
 
 /// List of lint findings, in the order of files and lines. If many rows have the same finding, only the first
 /// finding is reported, with the number of rows.

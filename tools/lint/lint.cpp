@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "tools/fit/noise/contradicting_rows.h"
 #include "tools/format/columns.h"
 #include "tools/lint/machine_lint.h"
 #include "tools/lint/measurement_lint.h"
@@ -99,17 +100,40 @@ void compare_directions(const model::Machine& machine, const std::vector<std::st
   }
 }
 
+/// Warns about rows at one pose whose points cannot both be right.
+void look_for_contradictions(const model::Machine& machine, const std::vector<std::string>& bytes,
+                             std::vector<LintedFile>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (files[i].kind != LintedKind::kMeasurement || !files[i].usable) continue;
+    const model::Measurement m = model::parse_measurement(bytes[i], files[i].file, machine);
+    const auto rows = fit::contradicting_rows(m);
+    if (rows.empty()) continue;
+    LintFinding warning;
+    warning.file = files[i].file;
+    warning.line = m.line[rows.front().row];
+    warning.weight = LintWeight::kWarning;
+    warning.what = fit::contradiction_in_words(m, rows);
+    files[i].findings.push_back(std::move(warning));
+  }
+}
+
 }  // namespace
 
 std::vector<LintedFile> lint_files(const std::vector<std::string>& paths) {
-  std::vector<LintedFile> list;
   std::vector<std::string> bytes;
+  bytes.reserve(paths.size());
+  for (const std::string& path : paths) bytes.push_back(text::read_file(path));
+  return lint_contents(paths, bytes);
+}
+
+std::vector<LintedFile> lint_contents(const std::vector<std::string>& names,
+                                      const std::vector<std::string>& bytes) {
+  std::vector<LintedFile> list;
   std::optional<model::Machine> machine;
-  for (const std::string& path : paths) {
-    bytes.push_back(text::read_file(path));
-    list.push_back({path, linted_kind_of(bytes.back(), path), true, {}});
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    list.push_back({names[i], linted_kind_of(bytes[i], names[i]), true, {}});
     if (list.back().kind != LintedKind::kMachine) continue;
-    MachineLint result = lint_machine(bytes.back(), path);
+    MachineLint result = lint_machine(bytes[i], names[i]);
     list.back().findings = std::move(result.findings);
     if (!machine) machine = std::move(result.machine);
   }
@@ -123,6 +147,7 @@ std::vector<LintedFile> lint_files(const std::vector<std::string>& paths) {
   }
   if (!machine || !machine->instrument) compare_uncertainties(list);
   if (machine) compare_directions(*machine, bytes, list);
+  if (machine) look_for_contradictions(*machine, bytes, list);
   return list;
 }
 

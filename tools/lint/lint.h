@@ -24,5 +24,8 @@ struct LintedFile {
 /// tested before the measurement files. Each measurement file is then tested with the first machine that
 /// could be read. Throws InputError if a file cannot be opened.
 std::vector<LintedFile> lint_files(const std::vector<std::string>& paths);
+/// The same for files that were read already. `names`: the names for the findings; `bytes`: the contents.
+std::vector<LintedFile> lint_contents(const std::vector<std::string>& names,
+                                      const std::vector<std::string>& bytes);
 
 }  // namespace vernier::lint

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The remedies that an import prints: as a user pastes them, with the options of the first call.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -128,6 +131,50 @@ TEST_F(ImportRemedies, JointsWithTheNumbersAndUnitsOfTheAxesAreRead) {
   EXPECT_THAT(said, HasSubstr("are the axes of the machine, by their numbers: J1=A1 [deg], J2=A2 [deg]"));
   EXPECT_THAT(text::read_file(folder + "/read.csv"),
               testing::StartsWith("J1[deg],J2[deg],x[mm],y[mm]\n10,20,"));
+}
+
+/// Poses of the arm under joints A1 and A2: the points that its nominal machine reaches, rounded.
+std::string poses_of_arm(const std::string& unit, double factor) {
+  std::string csv = "A1 [" + unit + "],A2 [" + unit + "],x [mm],y [mm],z [mm]\n";
+  for (int i = 0; i < 20; ++i) {
+    const double a = (i * 67 % 290) - 145.13, b = (i * 41 % 250) - 125.21, rad = std::numbers::pi / 180;
+    csv += fmt::format("{:.5f},{:.5f},{:.4f},{:.4f},0\n", factor * a, factor * b,
+                       300 * std::cos(a * rad) + 200 * std::cos((a + b) * rad),
+                       300 * std::sin(a * rad) + 200 * std::sin((a + b) * rad));
+  }
+  return csv;
+}
+
+/// The columns become those of the axes by the machine file: no user has stated their unit.
+TEST_F(ImportRemedies, JointsInAnotherUnitThanTheirHeadingAreRefusedBesideTheMachineToo) {
+  text::write_file(folder + "/arm.xml", kArm);
+  text::write_file(folder + "/deg.csv", poses_of_arm("rad", 1));
+  ASSERT_EQ(run("vernier import table deg.csv --machine arm.xml -o read.csv"), 1) << said;
+  EXPECT_THAT(said, HasSubstr("degrees under a heading in rad"));
+  EXPECT_THAT(said, HasSubstr("if [rad] is right, give --column \"J1[rad]=A1 [rad]\""));
+  text::write_file(folder + "/right.csv", poses_of_arm("deg", 1));
+  ASSERT_EQ(run("vernier import table right.csv --machine arm.xml -o read.csv"), 0) << said;
+}
+
+TEST_F(ImportRemedies, ARepeatedPoseThatContradictsIsNamedByImportLintAndFit) {
+  text::write_file(folder + "/arm.xml", kArm);
+  const std::string csv = poses_of_arm("deg", 1);
+  std::string wrong = csv.substr(csv.find('\n') + 1, csv.find('\n', csv.find('\n') + 1) - csv.find('\n'));
+  wrong.replace(wrong.rfind(','), std::string::npos, ",3.7\n");
+  text::write_file(folder + "/log.csv", csv + wrong);
+  const std::string words =
+      "The rows in lines 2 and 22 of read.csv have the same commanded position, and their points are 3700 um "
+      "apart";
+  ASSERT_EQ(run("vernier import table log.csv --machine arm.xml -o read.csv"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("note: " + words));
+  ASSERT_EQ(run("vernier lint arm.xml read.csv"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("read.csv:22: warning: " + words));
+  ASSERT_EQ(run("vernier fit arm.xml read.csv -o fitted.xml"), 0) << said;
+  EXPECT_THAT(said, HasSubstr(words));
+  EXPECT_THAT(text::read_file(folder + "/fitted.xml"), HasSubstr("contradicting-rows"));
+  text::write_file(folder + "/log.csv", csv);
+  ASSERT_EQ(run("vernier import table log.csv --machine arm.xml -o read.csv"), 0) << said;
+  EXPECT_THAT(said, testing::Not(HasSubstr("the same commanded position")));
 }
 
 TEST_F(ImportRemedies, OfATrackerReadTheFileThatIsThere) {

@@ -50,7 +50,7 @@ const std::vector<Room>& rooms_of_tools() {
       {"evaluate", {"format", "maths", "model", "text"}},
       {"import", {"format", "maths", "model", "sheet", "text", "timebase"}},
       {"exchange", {"format", "kinematics", "maths", "model", "text"}},
-      {"lint", {"format", "import", "model", "sheet", "text"}},
+      {"lint", {"fit", "format", "import", "model", "sheet", "text"}},
       {"part", {"fit", "format", "maths", "model", "text"}},
       {"safety", {"fit", "kinematics", "maths", "model", "text"}},
       {"compile", {"format", "maths", "model", "text"}},
@@ -75,8 +75,8 @@ const std::vector<Room>& rooms_of_tools() {
         "safety", "simulate", "text"}},
       {"python", {"diagnose", "effects", "fit", "format", "model", "plan", "residual", "results", "text"}},
       {"workbench",
-       {"diagnose", "effects", "fit", "format", "http", "import", "maths", "model", "results", "safety",
-        "simulate", "text", "upload"}},
+       {"diagnose", "effects", "fit", "format", "http", "import", "lint", "maths", "model", "results",
+        "safety", "simulate", "text", "upload"}},
   };
   return kRooms;
 }

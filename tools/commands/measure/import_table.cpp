@@ -8,6 +8,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
+#include "tools/fit/noise/contradicting_rows.h"
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/columns/delimited.h"
 #include "tools/import/distances/distance_table.h"
@@ -72,6 +73,11 @@ struct OpenAxes {
   std::vector<importer::MissingAxis> axes;
   std::vector<importer::FreeColumn> columns;
   importer::JointColumns found;
+  std::vector<std::string> headings() const {
+    std::vector<std::string> list;
+    for (const auto& [axis, column] : found.pairs) list.push_back(columns[column].heading);
+    return list;
+  }
   /// Words of the option --column for the columns that were found.
   std::vector<std::string> words() const {
     std::vector<std::string> list;
@@ -240,6 +246,7 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
     if (open.found.sure) {
       const std::vector<std::string> more = open.words();
       words.columns.insert(words.columns.end(), more.begin(), more.end());
+      words.found = open.headings();
       reading = importer::read_as_sheet(bytes, arguments.file, words, std::move(wishes));
       reading.sheet.notes.push_back(
           fmt::format("columns with other names are the axes of the machine, {}: {}", open.found.why,
@@ -282,13 +289,24 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
                  {"columns", importer::columns_json(reading)},
                  {"notes", sheet.notes}};
   if (reading.distances) result["points"] = reading.distances->points;
+  std::string contradiction;
   if (!arguments.machine.empty()) {
-    const model::Measurement m =
+    model::Measurement m =
         model::parse_measurement(csv, arguments.file, model::read_machine(arguments.machine));
+    // The lines of a note are those of the file that is written.
+    if (!arguments.output.empty()) m.files.front() = arguments.output;
+    if (const auto rows = fit::contradicting_rows(m); !rows.empty()) {
+      contradiction = fit::contradiction_in_words(m, rows);
+      result["notes"].push_back(contradiction);
+    }
     result["n_obs"] = m.observations.size();
     result["n_excluded"] = m.excluded;
   }
+  const auto print_note = [&] {
+    if (!contradiction.empty()) fmt::print(out, "note: {}\n", contradiction);
+  };
   if (arguments.preview) {
+    print_note();
     print_rows(out, csv);
     write_json(arguments.json, result);
     fmt::print(out, "preview: the first of {} rows; no file is written\n", read.line.size());
@@ -302,6 +320,7 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
                      importer::sheet_profile(sheet, reading.table, reading.columns, reading.wishes));
   write_json(arguments.json, result);
   print_columns(out, reading);
+  print_note();
   fmt::print(out, "{}: {} rows\n", arguments.output, read.line.size());
 }
 

@@ -22,14 +22,7 @@ nlohmann::ordered_json result_json(const std::vector<lint::LintedFile>& files) {
   for (const lint::LintedFile& file : files) {
     list.push_back(
         {{"file", file.file}, {"kind", lint::linted_kind_name(file.kind)}, {"usable", file.usable}});
-    for (const lint::LintFinding& finding : file.findings)
-      findings.push_back({{"file", finding.file},
-                          {"line", finding.line > 0 ? nlohmann::ordered_json(finding.line)
-                                                    : nlohmann::ordered_json(nullptr)},
-                          {"weight", lint::weight_name(finding.weight)},
-                          {"word", finding.word},
-                          {"what", finding.what},
-                          {"meaning", finding.meaning}});
+    for (const lint::LintFinding& finding : file.findings) findings.push_back(lint::finding_json(finding));
   }
   return {{"files", list}, {"findings", findings}};
 }

@@ -214,10 +214,13 @@ std::string axis_measured(const std::string& reading) {
 
 /// Notes the divisions of dial gauges and unusual sizes; a size that only a wrong unit or a wrong cell
 /// explains is a doubt of its column.
-void judge_sizes(SheetReading& reading) {
+/// `found`: headings that the program assigned itself, so that the user stated no unit.
+void judge_sizes(SheetReading& reading, const std::vector<std::string>& found) {
   const Guess guess(reading.wishes);
   std::vector<SizedColumn> sized;
-  for (const SheetColumn& column : reading.columns) {
+  for (std::size_t k = 0; k < reading.columns.size(); ++k) {
+    const SheetColumn& column = reading.columns[k];
+    const bool by_user = std::find(found.begin(), found.end(), reading.table.headings[k].text) == found.end();
     SizedColumn one;
     if (column.use != SheetColumn::Use::kLeft) {
       const bool deviation = column.use == SheetColumn::Use::kDeviation;
@@ -225,7 +228,7 @@ void judge_sizes(SheetReading& reading) {
              column.name,
              column.unit,
              column.to_target ? text::in_small_letters(column.name) : column.name,
-             column.why == "as given" || column.why == "by the profile",
+             (column.why == "as given" && by_user) || column.why == "by the profile",
              column.why == "by the profile",
              deviation ? "" : axis_measured(column.name),
              !deviation && guess.is_axis(column.name)};
@@ -455,7 +458,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   if (!unfolded_axes) note_sparse_columns(result);  // the rows of the other axes have no reading
   note_rotating_frame(result);
   judge_other_quantities(result.sheet, result.table, result.columns);
-  judge_sizes(result);
+  judge_sizes(result, words.found);
   note_exchanged_headings(result.sheet, result.table, result.columns);
   if (result.wishes.directions_from_order)
     result.sheet.notes.push_back(

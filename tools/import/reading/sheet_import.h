@@ -21,8 +21,9 @@ struct SheetWords {
   std::vector<std::string> columns, deviations, constants, left;
   std::vector<std::string> fill;  // headings of columns whose empty cells have the value above them
   bool one_motion = false;
-  std::vector<std::string> axes;  // axes of the machine, if the machine is known
-  NamedPoints points;             // points of a table of distances between named points
+  std::vector<std::string> axes;   // axes of the machine, if the machine is known
+  std::vector<std::string> found;  // headings in `columns` that the program found: no unit is stated
+  NamedPoints points;              // points of a table of distances between named points
 };
 
 /// Result of reading a spreadsheet: headings, columns and their meaning, before the rows of data are
