@@ -299,6 +299,25 @@ TEST(PointDistances, ReadingsOfOneDistanceThatDifferAreNoted) {
   EXPECT_THAT(read(rows, with(kCorners, {"u[um]=200"})), HasSubstr("more than 0.56 mm for u = 0.2 mm"));
 }
 
+/// A skewed square of 170 mm: the law of the parallelogram holds for it, and not with a diagonal 0.9 mm
+/// wrong. The squareness follows from the difference of the diagonals, so that both of them may be the wrong
+/// one.
+TEST(PointDistances, ADiagonalThatContradictsTheSidesIsNotedWithBoth) {
+  const std::string sides = "AB;170,12\nBC;169,93\nCD;170,12\nAD;169,93\n";
+  const std::string right = read(sides + "AC;240,28\nBD;240,64\n", square());
+  EXPECT_THAT(right, Not(HasSubstr("contradict each other")));
+  const std::string wrong = read(sides + "AC;240,28\nBD;239,74\n", square());
+  EXPECT_THAT(wrong, HasSubstr("the sides and diagonals of A, B, C, D contradict each other by 0.88 mm"));
+  EXPECT_THAT(wrong,
+              HasSubstr("the sides agree with 241.16 mm for A-C (240.28 mm measured), or with 240.62 mm "
+                        "for B-D (239.74 mm measured)"));
+  EXPECT_THAT(read(sides + "AC;240,28\nBD;239,74\n", with(kCorners, {"u[mm]=0.2"})),
+              Not(HasSubstr("contradict each other")));
+  EXPECT_THAT(read("AB;170,12\nBC;169,93\nAC;240,28\nBD;239,74\n", square()),
+              Not(HasSubstr("contradict each other")))
+      << "nothing is redundant";
+}
+
 TEST(PointDistances, ADoubtfulUnitIsNamedWithTheRightOne) {
   EXPECT_THAT(read("Seite;Abweichung (1/100)\nAB;31\nBC;-16\nAC;-12\nBD;37\n", square()),
               AllOf(StartsWith("refused: "), HasSubstr("--column \"deviation[0.01mm]=Abweichung (1/100)\""),

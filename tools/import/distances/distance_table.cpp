@@ -462,6 +462,7 @@ class Maker {
           "no standard uncertainty of the distances: a fit beside other readings needs it; state that of the "
           "caliper, for example --set \"u[mm]=0.02\"");
     note_apart(measured);
+    note_diagonals(measured);
     std::string repeated;
     if (measured.size() > pairs_of(measured))
       repeated = fmt::format(", {} of them repeated", measured.size() - pairs_of(measured));
@@ -510,6 +511,60 @@ class Maker {
                       text::fixed_text((*least)->mm, 3), sheet_.line[(*least)->row],
                       text::fixed_text((*most)->mm, 3), sheet_.line[(*most)->row], source));
     }
+  }
+
+  /// Notes parallelograms whose sides contradict their diagonals: AC^2 + BD^2 = AB^2 + BC^2 + CD^2 + DA^2. In
+  /// a distorted one the right side is larger by four times the squared distance of the midpoints of the
+  /// diagonals (Euler), which is below 1 um for a distortion of 0.3 mm.
+  void note_diagonals(const std::vector<const Distance*>& measured) {
+    // Without u: twice the limit of two readings of a caliper. With u: three standard deviations of the sum,
+    // which are 2 u, because the squared sides of a rectangle are those of one diagonal.
+    constexpr double kUnknown_mm = 0.2, kTimesU = 6;
+    constexpr std::size_t kMostPoints = 40;  // more are a grid, and no square of a caliper
+    const double u_mm = stated_u_mm(), limit_mm = u_mm > 0 ? kTimesU * u_mm : kUnknown_mm;
+    std::map<std::pair<std::size_t, std::size_t>, double> of_pair;
+    for (const Distance* const one : measured) of_pair.emplace(std::minmax(one->from, one->to), one->mm);
+    const auto length = [&](std::size_t i, std::size_t j) {
+      const auto found = of_pair.find(std::minmax(i, j));
+      return found == of_pair.end() ? 0 : found->second;
+    };
+    const std::size_t n = point_.size() > kMostPoints ? 0 : point_.size();
+    for (std::size_t a = 0; a < n; ++a)
+      for (std::size_t c = a + 1; c < n; ++c)
+        for (std::size_t b = a + 1; b < n; ++b)
+          for (std::size_t d = b + 1; d < n; ++d) {
+            if (b == c || d == c || !is_parallelogram(a, b, c, d)) continue;
+            const double ac = length(a, c), bd = length(b, d);
+            double sides = 0, least = std::min(ac, bd);
+            for (const double side : {length(a, b), length(b, c), length(c, d), length(a, d)}) {
+              sides += side * side;
+              least = std::min(least, side);
+            }
+            const double apart = (sides - ac * ac - bd * bd) / (ac + bd);
+            if (least <= 0 || std::abs(apart) < limit_mm) continue;
+            const auto name = [&](std::size_t i, std::size_t j) {
+              return result_.points[i] + "-" + result_.points[j];
+            };
+            result_.notes.push_back(
+                fmt::format("the sides and diagonals of {}, {}, {}, {} contradict each other by {:.2f} mm, "
+                            "so that one of "
+                            "these six distances is wrong: the sides agree with {:.2f} mm for {} ({:.2f} mm "
+                            "measured), or "
+                            "with {:.2f} mm for {} ({:.2f} mm measured); measure both again",
+                            result_.points[a], result_.points[b], result_.points[c], result_.points[d],
+                            std::abs(apart), std::sqrt(std::max(0.0, sides - bd * bd)), name(a, c), ac,
+                            std::sqrt(std::max(0.0, sides - ac * ac)), name(b, d), bd));
+          }
+  }
+
+  /// True if the stated points a, b, c, d are the corners of a parallelogram in this order.
+  bool is_parallelogram(std::size_t a, std::size_t b, std::size_t c, std::size_t d) const {
+    constexpr double kSame_mm = 0.01;  // stated positions have two or three decimals
+    for (std::size_t k = 0; k < named_.axes.size(); ++k) {
+      const auto at = [&](std::size_t i) { return point_[i]->values[k]; };
+      if (named_.axes[k].rotary || std::abs(at(a) + at(c) - at(b) - at(d)) > kSame_mm) return false;
+    }
+    return true;
   }
 
   static std::size_t pairs_of(const std::vector<const Distance*>& measured) {

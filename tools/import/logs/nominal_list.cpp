@@ -40,7 +40,7 @@ struct List {
 /// True if the numbers of a column without a unit can only be degrees: one of them is more than a turn in
 /// radians.
 bool must_be_degrees(const List& list, std::size_t column) {
-  constexpr double kTurn_rad = 6.2832;
+  constexpr double kTurn_rad = 6.2832;  // a whole turn, rounded up
   double most = 0;
   for (std::size_t i = 0; i < list.rows.size(); ++i) {
     const auto number = sheet::number_at(list.reading.sheet, list.rows[i], column);
