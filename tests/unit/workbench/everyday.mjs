@@ -308,6 +308,7 @@ async function printer(page) {
   await page.type('#view-export [data-option=touches]', 'printer_read.csv');
   await page.click('#do-export');
   await words(page, '#export-result', 'klipper-with_bed-fitted/');
+  await words(page, '#left-out', 'squareness XY: not measured (the last fit had no parameter of it) (size unknown)');
 }
 
 /** A square that a printer printed: its sides and diagonals by the names of its corners, without their positions. */
@@ -511,6 +512,8 @@ async function robot(page) {
   await jointsOfOtherNames(page);
   await unknownTool(page);
   await pointsAndPositions(page);
+  await logWithoutUnits(page);
+  await noReadingsYet(page);
   await severalEnds(
     page,
     (ends) =>
@@ -576,6 +579,57 @@ async function pointsAndPositions(page) {
   await page.click('#fit');
   // The fit says where the reflector is, in the frame of the last link of the description.
   await words(page, '#fit-notes', 'mm in the frame of the link l6 of the URDF');
+}
+
+/** The same as a controller and a tracker write them: no units, a decimal comma, the points in another order. */
+async function logWithoutUnits(page) {
+  const rows = reflectorPoses()
+    .trim()
+    .split('\n')
+    .slice(1)
+    .map((line, i) => [`P${i + 1}`, ...line.split(',').map((one) => one.replace('.', ','))]);
+  await view(page, 'project');
+  await page.choose('#machine', 'arm-set.xml');
+  await page.drop([
+    { name: 'log.txt', text: `Name;A1;A2;A3;A4;A5;A6\n${rows.map((row) => row.slice(0, 7).join(';')).join('\n')}\n` },
+    {
+      name: 'tracker.txt',
+      text: `Name;X;Y;Z\n${rows
+        .toReversed()
+        .map((row) => [row[0], ...row.slice(7, 10)].join(';'))
+        .join('\n')}\n`,
+    },
+  ]);
+  const own = '[data-of="tracker.txt"]';
+  await words(page, `${own} #proposed-unit`, 'mm is proposed');
+  // How the text is read can be corrected, as on the command line; the preview follows.
+  await page.choose(`${own} [data-option=decimal]`, 'comma');
+  await page.until(`document.querySelector('${own} .source')?.textContent.includes('point,x[mm],y[mm],z[mm]')`, 'the preview');
+  await page.type(`${own} [data-option=nominal]`, 'log.txt');
+  await page.click(`${own} #do-import`);
+  await measured(page, 'tracker_read.csv');
+  await words(
+    page,
+    `${own} .import-note:last-of-type`,
+    'log.txt: the columns of the joints (A1 ...) have no unit: they are read in degrees',
+  );
+  await page.until("document.body.dataset.subject === 'yes'", 'the rows');
+  // What a check of the files says reaches who has no command line.
+  await words(page, '#lint', 'no check rows in the file');
+  assert.ok(!/ --[a-z]|vernier [a-z]/.test(await text(page, '#lint')), await text(page, '#lint'));
+}
+
+/** A file for readings to come can be chosen: every view says that it has none. */
+async function noReadingsYet(page) {
+  const plan = reflectorPoses()
+    .split('\n')
+    .map((line, i) => (line ? `${line.split(',').slice(0, 6).join(',')},${i ? ',,' : 'x[mm],y[mm],z[mm]'}` : ''));
+  await view(page, 'project');
+  await page.drop([{ name: 'a_plan.csv', text: plan.join('\n') }]);
+  await measured(page, 'a_plan.csv');
+  await words(page, '#stood-room', 'there are no readings in these rows yet');
+  await view(page, 'compare');
+  await words(page, '#view-compare .error', 'there are no readings in these rows yet');
 }
 
 /** A fit with an unknown tool says so on the page, and a button fits the tool point too. */

@@ -7,6 +7,7 @@
 #include "tools/format/csv_file.h"
 #include "tools/format/urdf_chain.h"
 #include "tools/import/logs/printer_file.h"
+#include "tools/lint/lint.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
 #include "tools/results/safety_json.h"
@@ -36,7 +37,8 @@ const FileDesk::Route* FileDesk::find(const ApiRequest& request) {
       {"POST", "/api/predict", &FileDesk::predict}, {"POST", "/api/explain", &FileDesk::explain},
       {"GET", "/api/names", &FileDesk::names},      {"POST", "/api/term", &FileDesk::term},
       {"GET", "/api/kind", &FileDesk::kind},        {"POST", "/api/sheet", &FileDesk::sheet},
-      {"GET", "/api/robot", &FileDesk::robot},      {"GET", "/api/safety", &FileDesk::safety}};
+      {"GET", "/api/robot", &FileDesk::robot},      {"GET", "/api/safety", &FileDesk::safety},
+      {"GET", "/api/lint", &FileDesk::lint}};
   for (const Route& route : kRoutes)
     if (request.method == route.method && request.path == route.path) return &route;
   return nullptr;
@@ -109,6 +111,18 @@ ApiReply FileDesk::safety(const ApiRequest& request) {
                      {"refusal", sheet.refusal()},
                      {"stale", sheet.stale},
                      {"rules", results::safety_json(sheet)}});
+}
+
+/// {"findings"}: what `vernier lint` says of a machine and the measurements beside it.
+ApiReply FileDesk::lint(const ApiRequest& request) {
+  std::vector<std::string> names = request.words("measurement"), bytes;
+  if (const std::string machine = request.word("machine"); !machine.empty())
+    names.insert(names.begin(), machine);
+  for (const std::string& name : names) bytes.push_back(text::read_file(project_.existing(name).string()));
+  Json list = Json::array();
+  for (const lint::LintedFile& file : lint::lint_contents(names, bytes))
+    for (const lint::LintFinding& finding : file.findings) list.push_back(lint::finding_json(finding));
+  return json_reply({{"findings", list}});
 }
 
 ApiReply FileDesk::excluded(const ApiRequest& request) {

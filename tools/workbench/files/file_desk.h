@@ -33,6 +33,7 @@ class FileDesk {
   ApiReply robot(const ApiRequest& request);
   ApiReply sheet(const ApiRequest& request);
   ApiReply safety(const ApiRequest& request);
+  ApiReply lint(const ApiRequest& request);
 
   struct Route;
   static const Route* find(const ApiRequest& request);

@@ -50,6 +50,7 @@ export const programWords = (words) =>
       / \(import table --directions from-order\)/g,
       ' under Project: press "read differently" beside the file, and choose "from-order" in the field "directions"',
     )
+    .replace(/make the machine file with --stations (\S+) \(vernier new\)/g, 'make a new machine file with $1 in the field "stations"')
     .replace(
       / \(import table:? --set "([^"]+)"\)/g,
       ' under Project: press "read differently" beside the file, and write $1 into the field "set"',

@@ -6,6 +6,7 @@ import { importInstrument } from './instrument.js';
 import { optionFields } from './options.js';
 import { button, guarded, panel, showError } from './parts.js';
 import { kReflector } from './reflector.js';
+import { lintPanel } from './lint.js';
 import { loadRows } from './rows.js';
 import { importSheet } from './sheet.js';
 import { stoodPanel } from './stood.js';
@@ -402,6 +403,7 @@ export function projectView(root) {
         ),
       ),
     ),
+    lintPanel(),
     history(),
   );
   return { show() {} };

@@ -90,6 +90,9 @@ export const measured = () => ({ machine: store.machine, meas: store.measurement
 /** The same for the comparison. */
 export const compared = () => ({ ...measured(), ...(store.datum ? { datum: true } : {}) });
 
+const noReadings = () =>
+  `${store.measurements.join(', ')}: there are no readings in these rows yet, only positions. Take in what was measured, under Project.`;
+
 const chosen = () => [store.machine, ...store.measurements].join('\n');
 
 /** Loads the machine and rows that are chosen; everything else follows from the event. Rows that cannot be read: `refusal`. */
@@ -104,8 +107,11 @@ export async function loadRows() {
         measurement: store.measurements,
         ...(store.datum ? { datum: '1' } : {}),
       });
+      // A plan, or a file for readings to come: there is nothing to show, and no chart has a kind to draw.
+      if (!rows.observations.kind.length) throw new Refused(noReadings());
     } catch (why) {
       if (!(why instanceof Refused)) throw why;
+      rows = null;
       if (asked === chosen()) store.refusal = why.message;
     }
   }

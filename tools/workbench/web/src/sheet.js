@@ -18,6 +18,9 @@ const kReadAs = [
   ['probe', 'touches of a probe'],
 ];
 
+/** The unit of a tracker's points whose headings have none: a proposal, which the panel shows. */
+const kUsualUnit = 'mm';
+
 /** Words above the names of points. */
 const kPointName = /^(name|point|punkt|punktname|id)$/i;
 
@@ -32,7 +35,7 @@ function pointsOfATracker(preview, axes) {
   if (!axes.length || preview.workbook || xyz.length !== 3 || rest > 2 || preview.columns.some((one) => named(one.name))) return [];
   const names = preview.columns.map((one, k) => [k, one]).filter(([, one]) => kPointName.test(one.name));
   return [
-    ...xyz.map(([k, one]) => [k, { use: 'column', name: one.name.toLowerCase(), unit: one.unit }]),
+    ...xyz.map(([k, one]) => [k, { use: 'column', name: one.name.toLowerCase(), unit: one.unit || kUsualUnit }]),
     ...names.slice(0, 1).map(([k]) => [k, { use: 'column', name: 'point', unit: '' }]),
   ];
 }
@@ -52,7 +55,10 @@ const kWhereItStood =
 
 /** What the table of columns and the preview say; all other options of the import have fields. */
 const kInTable = ['file', 'output', 'column', 'deviation', 'leave', 'sheet', 'machine', 'point'];
-const kOfPreview = [...kInTable, 'separator', 'decimal', 'skip', 'header'];
+const kOfPreview = [...kInTable, 'header'];
+/** How the text is read: with another answer of these the preview is another. */
+const kOfText = ['separator', 'decimal', 'skip', 'comment'];
+const ofText = (values) => Object.fromEntries(Object.entries(values).filter(([name]) => kOfText.includes(name)));
 
 /** The name of a sheet as a part of the name of a file. */
 const inFileName = (sheet) => sheet.replace(/[\s/\\:]+/g, '_');
@@ -142,12 +148,18 @@ export async function importSheet(box, name, handOver, asks = false) {
     read_into = new Map(), // the measurement file of each sheet that was imported
     tables = new Set(); // the sheets to import; two sheets that are read as one table count as one
   let kind = null,
+    proposed = false, // a unit that no heading states
     axes = [], // of the chosen machine
     sheet = '', // of a workbook; empty: the program's choice
     turn = 0;
   const error = el('div', {});
   const forms = Object.fromEntries(
-    kReadAs.map(([one]) => [one, optionFields(`import ${one}`, one === 'table' ? kInTable : kOfPreview, () => one === 'table' && draw())]),
+    kReadAs.map(([one]) => [
+      one,
+      optionFields(`import ${one}`, one === 'table' ? kInTable : kOfPreview, ({ currentTarget: field }) => {
+        if (one === 'table' || kOfText.includes(field.dataset.option)) draw();
+      }),
+    ]),
   );
   /** The table of columns as options of `import table`. */
   const columns = () => {
@@ -169,7 +181,7 @@ export async function importSheet(box, name, handOver, asks = false) {
       name,
       machine: store.machine,
       ...ofSheet(),
-      ...forms.table.values(),
+      ...(kind === null || kind === 'table' ? forms.table.values() : ofText(forms[kind].values())),
       ...columns(),
       ...ofPoints(),
     }).catch((why) => {
@@ -199,15 +211,19 @@ export async function importSheet(box, name, handOver, asks = false) {
     guarded(error, async () => {
       const several = preview.sheets.length > 1;
       const output = freeName(`${name.replace(/\.[^.]*$/, '')}_${several && sheet ? inFileName(sheet) : 'read'}`, '.csv');
-      const options = kind === 'table' ? { ...ofSheet(), ...columns(), ...ofPoints() } : ofPreview(preview);
-      const values = forms[kind].values();
+      const options = kind === 'table' ? { ...ofSheet(), ...columns(), ...ofPoints() } : {};
+      // The preview has read the text with the answers of the fields, and knows the rest.
+      const values = { ...forms[kind].values(), ...(kind === 'table' ? {} : ofPreview(preview)) };
       // The list of nominal positions, and the position of a point, have the axes of the machine.
       const machine = (values.nominal || options.point) && store.machine ? { machine: store.machine } : {};
-      await run({ command: `import ${kind}`, file: name, ...options, ...values, ...machine, output });
+      const { text } = await run({ command: `import ${kind}`, file: name, ...options, ...values, ...machine, output });
+      // What a tracker's import assumed and how it joined the points: the table of columns has said all of the others.
+      const said_by = kind === 'table' ? [] : text.split('\n').filter((line) => line.trim() && !line.startsWith(`${output}: `));
       box.replaceChildren(
         panel(
           null,
           el('p', { id: 'imported' }, `${name}: ${onPage(preview.how)}. Read into `, el('strong', {}, output), '.'),
+          said_by.map((line) => el('p', { class: 'note import-note' }, line)),
           button('Read it differently', () => draw(preview), { class: 'quiet', id: 'read-differently' }),
           others(preview),
         ),
@@ -322,6 +338,13 @@ export async function importSheet(box, name, handOver, asks = false) {
         kind === 'tracker' && axes.length && !now.columns.some((one) => axes.some((axis) => axis.name === one.name))
           ? el('p', { class: 'note', id: 'where-it-stood' }, kWhereItStood)
           : null,
+        kind === 'tracker' && proposed
+          ? el(
+              'p',
+              { class: 'note', id: 'proposed-unit' },
+              `The headings of the point have no unit: ${kUsualUnit} is proposed. Correct it if it is another.`,
+            )
+          : null,
         el(
           'div',
           { class: 'controls' },
@@ -374,7 +397,11 @@ export async function importSheet(box, name, handOver, asks = false) {
     const first = await guarded(error, ask);
     if (!first) return refused();
     kind = likely(first, axes);
-    if (kind === 'tracker') for (const [k, one] of pointsOfATracker(first, axes)) said.set(k, one);
+    if (kind === 'tracker')
+      for (const [k, one] of pointsOfATracker(first, axes)) {
+        said.set(k, one);
+        proposed ||= one.unit !== first.columns[k].unit;
+      }
     if (said.size) return draw();
     return first.message === null && kind === 'table' && !asks ? doImport(first) : draw(first);
   }
