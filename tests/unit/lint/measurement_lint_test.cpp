@@ -300,6 +300,12 @@ TEST(MeasurementLintOf, StationsAreProposedOnlyWithThreeReadingsForEachOfThem) {
   EXPECT_NE(lint("X", 4, "x[mm]").find("--stations X=25"), std::string::npos) << lint("X", 4, "x[mm]");
   EXPECT_EQ(lint("X Y Z", 2, "x[mm]").find("--stations"), std::string::npos)
       << "50 readings of one coordinate for three columns";
+  // A laser measures one column of the table: more stations of the other columns may cost more than the
+  // curve.
+  EXPECT_NE(lint("X Y Z", 4, "x[mm]").find("This line measures one column of the table only"),
+            std::string::npos)
+      << lint("X Y Z", 4, "x[mm]");
+  EXPECT_EQ(lint("X", 4, "x[mm]").find("one column of the table only"), std::string::npos);
   EXPECT_NE(lint("X Y Z", 4, "x[mm],y[mm],z[mm]").find("--stations X=25"), std::string::npos);
 }
 

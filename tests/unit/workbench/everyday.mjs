@@ -308,7 +308,7 @@ async function printer(page) {
   await page.type('#view-export [data-option=touches]', 'printer_read.csv');
   await page.click('#do-export');
   await words(page, '#export-result', 'klipper-with_bed-fitted/');
-  await words(page, '#left-out', 'squareness XY: not measured (the last fit had no parameter of it) (size unknown)');
+  await words(page, '#left-out', 'and the files do not contain it (size unknown)');
 }
 
 /** A square that a printer printed: its sides and diagonals by the names of its corners, without their positions. */

@@ -25,7 +25,7 @@ const item = (one) =>
     'li',
     { 'data-weight': one.weight, 'data-word': one.word },
     `${place(one)}: ${words(one.what)}`,
-    one.meaning ? el('small', {}, ` ${words(one.meaning)}`) : null,
+    one.meaning ? el('small', {}, ` – ${words(one.meaning)}`) : null,
   );
 
 /** Nothing is said of files without a finding. */
