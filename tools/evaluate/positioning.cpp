@@ -49,8 +49,11 @@ TargetResult result_at(const TargetReadings& readings) {
     if (list.size() == 1)
       throw text::InputError(fmt::format(
           "the file has only one reading at {}{}: a standard deviation needs at least two "
-          "readings, ISO 230-2 requires five. If the file has no directions and all runs go one way, state "
-          "the direction of all rows (import table --set \"dirX=1\", with the name of the axis)",
+          "readings, ISO 230-2 requires five. If the file has no directions: if all runs go one way, state "
+          "the direction of all rows (import table --set \"dirX=1\", with the name of the axis); if the runs "
+          "go "
+          "forward and back (the values of two runs differ at each position), write + or - behind the number "
+          "of each run in the table (Lauf 1 +, Lauf 2 -), and import it again",
           text::number_text(readings.target), sense == 0 ? " forward" : " backward"));
     result.mean[sense] = mean_of(list);
     result.spread[sense] = spread_of(list, result.mean[sense]);

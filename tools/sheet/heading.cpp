@@ -304,6 +304,13 @@ void refuse_rows_of_words(const Sheet& sheet) {
   if (2 * colons > sheet.rows.size())
     throw text::InputError({sheet.file, sheet.line.front()}, ":",
                            "a colon cannot separate columns; save the table with semicolons or tabs");
+  for (std::size_t row = 0; row < sheet.rows.size(); ++row)
+    for (const std::string& cell : sheet.rows[row])
+      if (cell.starts_with('\'') && plain_number(cell.substr(1), sheet.decimal_comma))
+        throw text::InputError(
+            {sheet.file, sheet.line[row]}, cell,
+            "an apostrophe before a number, by which a spreadsheet marks a text: delete the "
+            "apostrophes (replace ' by nothing) and import the table again");
   refuse_rows_of_words(sheet);
   throw text::InputError(
       {sheet.file, sheet.line.front()}, "",

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tools/import/columns/column_guess.h"
+#include "tools/import/words/doubtful_words.h"
 #include "tools/import/words/sign_words.h"
 #include "tools/import/words/table_texts.h"
 #include "tools/sheet/sheet_number.h"
@@ -30,8 +31,13 @@ struct SignText {
 /// The sign that the file states outside the headings: in titles, remarks, and cells of words in the rows.
 SignText sign_of_texts(const sheet::Sheet& sheet, const sheet::SheetTable& table, Travel travel) {
   SignText found;
-  for (const TableText& one : texts_about(sheet, table))
-    found.add(sign_said(one.text, SignPlace::kTitle, travel), one.line, one.quoted());
+  for (const TableText& one : texts_about(sheet, table)) {
+    SignSaid said = sign_said(one.text, SignPlace::kTitle, travel);
+    // No rule reads the text, and its words may be about the sign. A remark of one row is about this row.
+    if (said == SignSaid::kNothing && !one.in_row && may_state(one.text, Doubtful::kSign))
+      said = SignSaid::kUnclear;
+    found.add(said, one.line, one.quoted());
+  }
   return found;
 }
 

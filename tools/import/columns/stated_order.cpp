@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -34,20 +35,6 @@ std::string named(const TableText& text) {
   return fmt::format("the text \"{}\"{}", text.quoted(), at);
 }
 
-/// The texts about a table; the cells of one line are one text too, because a comma may separate columns.
-std::vector<TableText> sentences_about(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
-  std::vector<TableText> texts = texts_about(sheet, table);
-  const std::size_t end = table.has_headings ? table.heading_row : 0;  // an upper line of headings too
-  for (std::size_t row = 0; row < end; ++row) {
-    std::vector<std::string> cells;
-    for (const std::string& cell : sheet.rows[row])
-      if (!cell.empty()) cells.push_back(cell);
-    if (cells.size() > 1 || (table.upper_row && row == *table.upper_row))
-      texts.push_back({sheet.line[row], text::joined(cells, ", ")});
-  }
-  return texts;
-}
-
 /// The first text that states directions; a text that states them clearly before the others.
 Found stated_in(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
   Found found;
@@ -70,6 +57,13 @@ bool stated_by_user(const SheetWishes& wishes) {
          std::any_of(wishes.constants.begin(), wishes.constants.end(), senses) ||
          std::any_of(wishes.assignments.begin(), wishes.assignments.end(),
                      [&](const auto& one) { return senses(one.column); });
+}
+
+/// What a note adds if the text states the changes of the direction only.
+std::string assumption(const Found& found) {
+  return found.stated.assumed
+             ? " (the text names the other direction only: the other runs are taken as forward)"
+             : "";
 }
 
 int number_of(const std::string& run) {
@@ -99,19 +93,19 @@ void take_stated_directions(sheet::Sheet& sheet, const sheet::SheetTable& table,
   const Found found = stated_in(sheet, table);
   if (!found.any) return;
   const bool each = std::all_of(runs.begin(), runs.end(), [&](const RunColumn& one) {
-    return found.stated.of(number_of(one.run)) != 0;
+    return found.stated.of(number_of(one.run), static_cast<int>(runs.size())) != 0;
   });
   if (!each) return note_unclear(sheet, found);
   std::vector<std::string> names;
   for (RunColumn& one : runs) {
-    one.sense = found.stated.of(number_of(one.run));
+    one.sense = found.stated.of(number_of(one.run), static_cast<int>(runs.size()));
     one.relative = one.forth = found.stated.way;
     names.push_back(one.run + (one.sense > 0 ? "+" : "-"));
   }
   sheet.notes.push_back(fmt::format(
-      "{} states the approach directions of the runs: {}; if this is wrong, write + or - behind the "
+      "{} states the approach directions of the runs: {}{}; if this is wrong, write + or - behind the "
       "number of each run in its heading",
-      named(found.text), text::joined(names, ", ")));
+      named(found.text), text::joined(names, ", "), assumption(found)));
 }
 
 void turn_runs_back(sheet::Sheet& sheet, const sheet::SheetTable& table, const std::vector<RunColumn>& runs,
@@ -173,13 +167,16 @@ void add_stated_directions(sheet::Sheet& sheet, sheet::SheetTable& table, const 
   if (!position) return;
   const Found found = stated_in(sheet, table);
   if (!found.any || found.stated.count) return;
+  int count = 0;  // of runs
+  for (std::size_t row = table.first_data; runs && row < sheet.rows.size(); ++row)
+    count = std::max(count, number_of(sheet.rows[row][*runs]));
   std::vector<int> senses(sheet.rows.size(), 0);
   std::optional<double> before;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     if (sheet::is_blank(sheet.rows[row])) continue;
     const auto at = sheet::number_at(sheet, row, *position);
     const bool all = found.stated.kind == Kind::kAll;
-    senses[row] = found.stated.of(runs ? number_of(sheet.rows[row][*runs]) : 0);
+    senses[row] = found.stated.of(runs ? number_of(sheet.rows[row][*runs]) : 0, count);
     // All rows forward, and the rows go back: the text is about another thing.
     const bool against = all && !runs && before && at && *at < *before;
     if (senses[row] == 0 || against || (!all && !runs)) return note_unclear(sheet, found);
@@ -190,8 +187,46 @@ void add_stated_directions(sheet::Sheet& sheet, sheet::SheetTable& table, const 
   table.headings.push_back(heading_of_directions());
   sheet.written.clear();
   sheet.notes.push_back(fmt::format(
-      "{} states the approach directions of {}; if this is wrong, add a column with the heading Richtung",
-      named(found.text), runs ? "the runs" : "the rows"));
+      "{} states the approach directions of {}{}; if this is wrong, add a column with the heading Richtung",
+      named(found.text), runs ? "the runs" : "the rows", assumption(found)));
+}
+
+void apply_direction_codes(sheet::Sheet& sheet, const sheet::SheetTable& table, const SheetWishes& wishes) {
+  if (!table.has_headings || wishes.directions_from_order) return;
+  const Guess guess(wishes);
+  std::optional<std::size_t> column;
+  for (std::size_t k = 0; k < table.headings.size(); ++k) {
+    if (!is_sense(guess.column(table.headings[k]).name)) continue;
+    if (column) return;  // the text does not say which column it is about
+    column = k;
+  }
+  if (!column) return;
+  for (const TableText& one : sentences_about(sheet, table)) {
+    const std::map<std::string, int> codes = direction_codes_stated(one.text);
+    if (codes.empty()) continue;
+    bool usual = true;  // + and 1 for forward: no word is necessary
+    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+      const std::string& cell = sheet.rows[row][*column];
+      if (sheet::is_blank(sheet.rows[row]) || cell.empty()) continue;
+      const auto code = codes.find(text::in_small_letters(cell));
+      if (code == codes.end()) return;  // the text is about another column
+      usual &= sense_said(cell) == code->second;
+    }
+    if (usual) return;
+    std::string meaning;
+    for (const auto& [code, sense] : codes)
+      meaning += fmt::format("{}{} is {}", meaning.empty() ? "" : ", ", code, sense > 0 ? "forward" : "back");
+    for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+      std::string& cell = sheet.rows[row][*column];
+      if (const auto code = codes.find(text::in_small_letters(cell)); code != codes.end())
+        cell = code->second > 0 ? "+" : "-";
+    }
+    sheet.notes.push_back(fmt::format(
+        "{} states the codes of \"{}\": {} (forward is the direction of increasing positions); if this is "
+        "wrong, write + and - into this column",
+        named(one), table.headings[*column].text, meaning));
+    return;
+  }
 }
 
 }  // namespace vernier::importer

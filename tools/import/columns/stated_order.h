@@ -28,4 +28,8 @@ void turn_runs_back(sheet::Sheet& sheet, const sheet::SheetTable& table, const s
 /// applied gets a note.
 void add_stated_directions(sheet::Sheet& sheet, sheet::SheetTable& table, const SheetWishes& wishes);
 
+/// Replaces the codes of a column of directions by + and - if a text states their meaning ("1 = rückwärts, 2
+/// = vorwärts"), with a note.
+void apply_direction_codes(sheet::Sheet& sheet, const sheet::SheetTable& table, const SheetWishes& wishes);
+
 }  // namespace vernier::importer

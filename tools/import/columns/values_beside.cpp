@@ -12,6 +12,7 @@
 
 #include "tools/format/units.h"
 #include "tools/import/columns/column_guess.h"
+#include "tools/import/words/doubtful_words.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/stated_directions.h"
 #include "tools/maths/median.h"
@@ -56,12 +57,17 @@ std::vector<std::pair<std::size_t, double>> numbers_of(const sheet::Sheet& sheet
 }
 
 /// True for a word of a dial gauge or of another instrument with a pointer.
-bool names_dial(const sheet::Heading& heading) {
+bool names_dial(const std::string& text) {
   constexpr std::array<std::string_view, 8> kParts = {"uhr", "dial",   "gauge",  "indicator",
                                                       "skt", "zeiger", "taster", "comparator"};
-  const std::string small = text::in_small_letters(heading.text);
+  const std::string small = text::in_small_letters(text);
   return std::any_of(kParts.begin(), kParts.end(),
                      [&](std::string_view part) { return small.find(part) != std::string::npos; });
+}
+
+bool titles_name_dial(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  const std::vector<std::string> titles = title_cells(sheet, table);
+  return std::any_of(titles.begin(), titles.end(), names_dial);
 }
 
 /// The column with the numbers 1 to n of the positions.
@@ -113,6 +119,21 @@ std::optional<StepColumns> columns_of_steps(const sheet::Sheet& sheet, const she
   return std::nullopt;
 }
 
+/// A column beside the readings that is no reading: a statistic, a tolerance, an uncertainty.
+bool says_statistic_or_limit(const sheet::Heading& heading) {
+  static const std::set<std::string> kOther = {
+      "toleranz", "tolerance",        "tol",   "grenze", "limit", "unsicherheit", "uncertainty",
+      "u",        "messunsicherheit", "stabw", "std"};
+  const std::vector<std::string> words = plain_words(heading.name);
+  // A word for a deviation: the proposal reads it ("Summenabweichung" before "Einzelabweichung").
+  const std::string small = text::in_small_letters(heading.name);
+  for (const char* part : {"abweich", "fehler", "deviat", "error"})
+    if (small.find(part) != std::string::npos) return true;
+  return names_statistic(heading) || std::any_of(words.begin(), words.end(), [](const std::string& word) {
+           return kOther.contains(word);
+         });
+}
+
 /// Means of the readings in each approach direction, and no readings: the user may read both of them.
 std::string means_of_directions(const sheet::SheetTable& table) {
   std::string forth, back;
@@ -135,6 +156,42 @@ std::string means_of_directions(const sheet::SheetTable& table) {
       "them, write Abweichung in place of the word for the mean in both headings (Abweichung vor [um], "
       "Abweichung zurück [um])",
       forth, back);
+}
+
+/// Two or more columns with one unit whose values are small beside the positions, and no heading says what
+/// they are: an option would read one of them, and the others would be lost.
+std::string several_deviations(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                               const std::vector<std::string>& units) {
+  const auto position = column_of_positions(table);
+  if (!position) return "";
+  const SheetWishes usual;
+  const Guess guess(usual);
+  std::vector<std::size_t> small;
+  for (std::size_t k = 0; k < table.headings.size(); ++k) {
+    const SheetColumn column = guess.column(table.headings[k]);
+    const bool other = k == *position || column.use != SheetColumn::Use::kColumn || units[k].empty() ||
+                       is_known_name(column.name) || guess.is_axis(column.name) ||
+                       says_statistic_or_limit(table.headings[k]);
+    if (other ||
+        values_beside(sheet, table, {*position, k, units[*position], units[k]}) != Values::kDeviations)
+      continue;
+    if (!small.empty() && units[small.front()] != units[k]) return "";
+    small.push_back(k);
+  }
+  constexpr std::size_t kFewest = 2;
+  if (small.size() < kFewest) return "";
+  std::string names;
+  for (const std::size_t k : small)
+    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", table.headings[k].text);
+  const std::string& unit = units[small.front()];
+  return fmt::format(
+      "the values of {0} are small compared with the positions, and --deviation would read one of these "
+      "columns "
+      "only: if they are deviations, one column for each approach direction, write Abweichung vor [{1}] and "
+      "Abweichung zurück [{1}] as their headings; if they are runs, write Lauf 1 + [{1}], Lauf 1 - [{1}] (+ "
+      "and "
+      "- are the approach directions)",
+      names, unit);
 }
 
 /// Notes measured positions, as the user states, whose values are not those of the axis.
@@ -220,13 +277,14 @@ std::optional<SizeDoubt> doubt_of_dial(const sheet::Sheet& sheet, const sheet::S
   constexpr double kJump = 0.5;   // of a turn: a larger step is shorter the other way round
   const bool divisions = unit == "0.01mm";
   const auto known = format::find_unit(unit);
-  if (!known || unit.empty() || (!divisions && !(unit == "mm" && names_dial(table.headings[column]))))
+  if (!known || unit.empty() ||
+      (!divisions &&
+       !(unit == "mm" && (names_dial(table.headings[column].text) || titles_name_dial(sheet, table)))))
     return std::nullopt;
   std::optional<double> before;
   std::size_t jump_row = 0, rows = 0;
   std::string from, to;
-  double low = kTurn_mm;  // the smallest value beyond the jump
-  bool steady = true;     // the readings are smooth if the pointer passed zero at each jump
+  bool steady = true;  // the readings are smooth if the pointer passed zero at each jump
   for (const auto& [row, value] : numbers_of(sheet, table, column)) {
     const double mm = value * known->factor;
     if (mm < 0 || mm >= kTurn_mm) return std::nullopt;
@@ -235,7 +293,6 @@ std::optional<SizeDoubt> doubt_of_dial(const sheet::Sheet& sheet, const sheet::S
         jump_row = row;
         to = sheet.rows[row][column];
       }
-      low = std::min(low, std::max(mm, *before));
       steady &= kTurn_mm - std::abs(mm - *before) < kJump * kTurn_mm / 2;
     } else if (jump_row == 0) {
       from = sheet.rows[row][column];
@@ -244,15 +301,16 @@ std::optional<SizeDoubt> doubt_of_dial(const sheet::Sheet& sheet, const sheet::S
     ++rows;
   }
   if (jump_row == 0 || !steady || rows < kRowsOfPattern) return std::nullopt;
-  const double turn = kTurn_mm / known->factor;
+  const double turn = kTurn_mm / known->factor, jumped = *sheet::number_at(sheet, jump_row, column);
+  const bool falls = jumped * known->factor < kJump * kTurn_mm;  // the pointer passed zero upward: 85, 4
   return SizeDoubt{
       column, sheet.line[jump_row], to,
       fmt::format(
           "the reading goes from {0} to {1} between two rows, nearly a whole turn of a dial gauge: if the "
-          "pointer passed zero, subtract {2} from the values above {3} in the file ({1} becomes {4}), and "
-          "give --sign if the dial runs against the axis",
-          from, to, text::fixed_text(turn, kShownDecimals), text::fixed_text(turn / 2, kShownDecimals),
-          text::fixed_text(*sheet::number_at(sheet, jump_row, column) - turn, kShownDecimals))};
+          "pointer passed zero, {2} {3} {4} each value in the file from this row on, up to the row where the "
+          "reading jumps back ({1} becomes {5}), and give --sign if the dial runs against the axis",
+          from, to, falls ? "add" : "subtract", text::fixed_text(turn, kShownDecimals), falls ? "to" : "from",
+          text::fixed_text(falls ? jumped + turn : jumped - turn, kShownDecimals))};
 }
 
 std::vector<SizeDoubt> judge_raw_readings(sheet::Sheet& sheet, const sheet::SheetTable& table,
@@ -305,7 +363,8 @@ std::string no_assignment(const sheet::Sheet& sheet, const sheet::SheetTable& ta
         table.headings[steps->from].text, table.headings[steps->to].text, table.headings[steps->length].text);
   for (std::size_t k = 0; k < table.headings.size(); ++k) {
     if (numbers_of(sheet, table, k).empty()) continue;
-    if (states_increments(table.headings[k].name, true))
+    if (states_increments(table.headings[k].name, true) ||
+        may_state(table.headings[k].name, Doubtful::kIncrements))
       return fmt::format(
           "by its heading the values of \"{0}\" are increments, each from the position before: replace "
           "each value in the file by the sum of the values up to it in its run, and write Abweichung "
@@ -315,7 +374,7 @@ std::string no_assignment(const sheet::Sheet& sheet, const sheet::SheetTable& ta
       return fmt::format("\"{}\", line {}: {}; then write Abweichung in the heading", table.headings[k].text,
                          dial->line, dial->text);
   }
-  return "";
+  return several_deviations(sheet, table, units);
 }
 
 }  // namespace vernier::importer

@@ -9,8 +9,10 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "tools/format/columns.h"
+#include "tools/import/words/doubtful_words.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/import/words/stated_directions.h"
 #include "tools/import/words/table_texts.h"
@@ -30,7 +32,8 @@ bool begins_with_one_of(const std::string& word, std::initializer_list<std::stri
 /// The first text about a table that states increments; empty: none.
 TableText text_of_increments(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
   for (TableText& one : texts_about(sheet, table))
-    if (states_increments(one.text, false)) return std::move(one);
+    if (states_increments(one.text, false) || (!one.in_row && may_state(one.text, Doubtful::kIncrements)))
+      return std::move(one);
   return {};
 }
 
@@ -131,6 +134,18 @@ void judge_other_quantities(sheet::Sheet& sheet, const sheet::SheetTable& table,
   doubt_increments(sheet, table, columns);
   doubt_steps(sheet, table, columns);
   note_diameters(sheet, table, columns);
+}
+
+void read_slopes_as_angles(sheet::Sheet& sheet, sheet::SheetTable& table) {
+  for (sheet::Heading& heading : table.headings) {
+    const std::vector<std::string> words = plain_words(heading.name);
+    if (std::none_of(words.begin(), words.end(), says_tilt)) continue;
+    const bool micro = heading.unit == "um/m", milli = heading.unit == "mm/m";
+    if (!micro && !milli) continue;
+    const std::string written = std::exchange(heading.unit, micro ? "urad" : "mrad");
+    sheet.notes.push_back(
+        fmt::format("\"{}\": a slope of 1 {} is an angle of 1 {}", heading.text, written, heading.unit));
+  }
 }
 
 }  // namespace vernier::importer

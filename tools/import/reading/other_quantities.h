@@ -17,4 +17,7 @@ namespace vernier::importer {
 void judge_other_quantities(sheet::Sheet& sheet, const sheet::SheetTable& table,
                             std::vector<SheetColumn>& columns);
 
+/// Reads the slope of a tilt ("Nicken [um/m]") as an angle, with a note.
+void read_slopes_as_angles(sheet::Sheet& sheet, sheet::SheetTable& table);
+
 }  // namespace vernier::importer

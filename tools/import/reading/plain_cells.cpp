@@ -120,6 +120,30 @@ void take_decimal_sign(sheet::Sheet& sheet) {
   if (other && !shown) sheet.decimal_comma = !sheet.decimal_comma;
 }
 
+/// Notes a column U with small values of one sign, in a table without a word of another axis U: it is an axis
+/// of that name, or the expanded uncertainty.
+void note_capital_u(sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t k) {
+  const sheet::Heading& heading = table.headings[k];
+  if (heading.name != "U" || coverage_factor(heading.text) || has_column(table, columns::kUncertainty))
+    return;
+  const auto known = heading.unit.empty() ? std::nullopt : format::find_unit(heading.unit);
+  constexpr double kLargest_mm = 0.1;  // a larger uncertainty is no longer that of a measurement of a machine
+  if (!known || known->dimension != format::Dimension::kLength) return;
+  std::size_t rows = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto value = sheet::number_at(sheet, row, k);
+    if (!value) continue;
+    if (*value <= 0 || *value * known->factor > kLargest_mm) return;
+    ++rows;
+  }
+  if (rows == 0) return;
+  sheet.notes.push_back(
+      fmt::format("\"{0}\" is read as the position of an axis U: if it is the expanded uncertainty, write U "
+                  "(k=2) [{1}] as its "
+                  "heading; if it is the standard uncertainty, give --column \"u={0}\"",
+                  heading.text, heading.unit));
+}
+
 }  // namespace
 
 void leave_tolerances(sheet::Sheet& sheet) {
@@ -192,6 +216,7 @@ void settle_uncertainties(sheet::Sheet& sheet, sheet::SheetTable& table,
       clear_column(sheet, table, k, "uncertainty of a coordinate");
       continue;
     }
+    note_capital_u(sheet, table, k);
     const auto factor = coverage_factor(heading.text);
     if (!factor || !names_uncertainty(heading) || has_column(table, columns::kUncertainty)) continue;
     divide(sheet, table, k, *factor);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/format/units.h"
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/sheet_number.h"
@@ -23,6 +24,12 @@ bool names_difference(const sheet::Heading& heading) {
   const std::vector<std::string> words = heading_words(text::in_small_letters(heading.name));
   return words.size() == 1 &&
          (words[0] == "difference" || words[0] == "differenz" || words[0] == "diff" || words[0] == "delta");
+}
+
+bool one_dimension(const std::string& one, const std::string& other) {
+  if (one == other) return true;
+  const auto a = format::find_unit(one), b = format::find_unit(other);
+  return !one.empty() && !other.empty() && a && b && a->dimension == b->dimension;
 }
 
 /// Step of the last decimal of a column of numbers.
@@ -39,14 +46,21 @@ bool is_difference_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                       std::size_t a, std::size_t b) {
   constexpr double kRoundings = 1.51;  // half a digit for each of three cells
   constexpr std::size_t kFewest = 3;   // fewer rows agree by chance
-  const double digit = kRoundings * last_digit_of(sheet, table, difference);
+  const auto factor = [&](std::size_t k) {
+    const std::string& unit = table.headings[k].unit;
+    const auto known = unit.empty() ? std::nullopt : format::find_unit(unit);
+    return known ? known->factor : 1.0;
+  };
+  const double own = factor(difference), of_readings = factor(a) / own;
+  const double digit = kRoundings * std::max(last_digit_of(sheet, table, difference),
+                                             of_readings * last_digit_of(sheet, table, a));
   std::size_t rows = 0;
   bool any = false;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const auto value = sheet::number_at(sheet, row, difference), one = sheet::number_at(sheet, row, a),
                other = sheet::number_at(sheet, row, b);
     if (!value || !one || !other) continue;
-    if (std::abs(std::abs(*one - *other) - std::abs(*value)) > digit) return false;
+    if (std::abs(of_readings * std::abs(*one - *other) - std::abs(*value)) > digit) return false;
     any |= std::abs(*value) > digit;
     ++rows;
   }
@@ -90,8 +104,8 @@ void leave_differences(sheet::Sheet& sheet, sheet::SheetTable& table, const std:
     if (by_option || !names_difference(table.headings[k])) continue;
     for (std::size_t a = 0; a < table.headings.size(); ++a)
       for (std::size_t b = 0; b < a; ++b) {
-        const bool readings = a != k && b != k && table.headings[a].unit == table.headings[k].unit &&
-                              table.headings[b].unit == table.headings[k].unit;
+        const bool readings = a != k && b != k && table.headings[a].unit == table.headings[b].unit &&
+                              one_dimension(table.headings[a].unit, table.headings[k].unit);
         if (!readings || !is_difference_of(sheet, table, k, a, b)) continue;
         sheet.notes.push_back(
             fmt::format("the column \"{}\" is the difference between \"{}\" and \"{}\" and is omitted",

@@ -24,6 +24,7 @@
 #include "tools/import/reading/side_statistics.h"
 #include "tools/import/reading/title_lines.h"
 #include "tools/import/reading/title_positions.h"
+#include "tools/import/reading/unused_texts.h"
 #include "tools/import/reading/verdict_columns.h"
 #include "tools/import/sizes/deviation_sizes.h"
 #include "tools/import/sizes/mistyped_cells.h"
@@ -123,13 +124,15 @@ void refuse_to_fill(const SheetReading& reading, std::size_t row, std::size_t fi
       if (is_missing(sheet.rows[other][k])) continue;
       ++(number(sheet.rows[other][k]) ? numbers : words);
     }
+    const std::string advice = advice_for_text(cell);
     if (numbers > words)
       throw text::InputError(
           {sheet.file, sheet.line[row]}, cell,
-          fmt::format("this row has a word where the other rows have a number (\"{}\"), and no value for "
+          fmt::format("{}this row has a word where the other rows have a number (\"{}\"), and no value for "
                       "\"{}\": if the row is no measurement (a mean, a sum), delete the row; otherwise write "
                       "the value into the empty cell",
-                      reading.table.headings[k].text, reading.table.headings[filled].text));
+                      advice.empty() ? "" : advice + "; ", reading.table.headings[k].text,
+                      reading.table.headings[filled].text));
   }
 }
 
@@ -392,10 +395,13 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   refuse_transposed(result.sheet, result.table);
   leave_words_below(result.sheet, result.table);
   note_short_rows(result.sheet, result.table);
+  const sheet::SheetTable written = result.table;  // with the headings of the file
+  const std::vector<TableText> texts = sentences_about(result.sheet, written);
   leave_state_lines(result.sheet, result.table);
   leave_invalid_rows(result.sheet, result.table);
   if (!pairs) note_repeated_readings(result.sheet, result.table);
   note_failed_formulas(result.sheet, result.table);
+  read_slopes_as_angles(result.sheet, result.table);
   refuse_counts_below(result.sheet, result.table);
   const bool axes_left = std::any_of(words.left.begin(), words.left.end(), [&](const std::string& one) {
     return find_heading(result.table, one) != std::string::npos;
@@ -415,6 +421,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   settle_uncertainties(result.sheet, result.table, named);
   if (pairs) {
     read_distances(result, *pairs, words);
+    note_unused_texts(result.sheet, written, texts, result.columns);
     return result;
   }
   refuse_points(words, result);
@@ -436,6 +443,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   }
   add_run_of_title(result.sheet, result.table, result.wishes.constants,
                    result.wishes.format.table.has_value() && result.runs == 0);
+  apply_direction_codes(result.sheet, result.table, result.wishes);
   if (result.runs == 0)
     add_stated_directions(result.sheet, result.table, with_columns(words, result.table, result.wishes));
   for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
@@ -460,6 +468,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   judge_other_quantities(result.sheet, result.table, result.columns);
   judge_sizes(result, words.found);
   note_exchanged_headings(result.sheet, result.table, result.columns);
+  note_unused_texts(result.sheet, written, texts, result.columns);
   if (result.wishes.directions_from_order)
     result.sheet.notes.push_back(
         "an axis without a column of directions has the direction of its last motion in the run (0: before "

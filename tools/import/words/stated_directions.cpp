@@ -87,12 +87,24 @@ std::vector<Sense> senses_in(const std::vector<std::string>& words) {
       any_of(words, {"hin", "vor"}) && any_of(words, {"her", "zurück", "zurueck", "rück", "rueck"});
   const bool heights = any_of(words, {"auf", "up"}) && any_of(words, {"ab", "down"});
   const bool signs = any_of(words, {"+"}) && any_of(words, {"-"});
+  // "From below" and "von oben": only both together are directions.
+  const auto side_at = [&](std::size_t k) {
+    if (k == 0 || (words[k - 1] != "from" && words[k - 1] != "von")) return 0;
+    const std::string word = without_point(words[k]);
+    return word == "below" || word == "unten" ? 1 : word == "above" || word == "oben" ? -1 : 0;
+  };
+  bool below = false, above = false;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    below |= side_at(k) > 0;
+    above |= side_at(k) < 0;
+  }
   for (std::size_t k = 0; k < words.size(); ++k) {
     const std::string word = without_point(words[k]);
     const bool by_pair = (pair && (word == "hin" || word == "her" || word == "vor")) ||
                          (signs && (word == "+" || word == "-")) ||
                          (heights && (word == "auf" || word == "ab" || word == "up" || word == "down"));
-    const int sense = by_pair ? sense_said(word) : sense_in_sentence(word);
+    const int side = below && above ? side_at(k) : 0;
+    const int sense = side != 0 ? side : by_pair ? sense_said(word) : sense_in_sentence(word);
     if (sense == 0) continue;
     const bool way = says_way(word) || sense_said(word) == 0;
     found.push_back({k, sense, way});
@@ -172,6 +184,128 @@ StatedDirections by_number(const std::vector<std::string>& words, const std::vec
   return stated;
 }
 
+/// A number in words, for "die ersten beiden".
+int count_said(const std::string& word) {
+  static const std::vector<FactWords> kCounts = {{"beiden", "zwei", "two", "both"},
+                                                 {"drei", "three"},
+                                                 {"vier", "four"},
+                                                 {"fünf", "five"},
+                                                 {"sechs", "six"}};
+  for (std::size_t k = 0; k < kCounts.size(); ++k)
+    if (kCounts[k].contains(word)) return static_cast<int>(k) + 2;
+  const auto number = whole_number(word);
+  return number ? *number : 0;
+}
+
+/// "Die ersten beiden Spalten vorwärts, die letzten beiden rückwärts", "first three runs up, last three
+/// down".
+StatedDirections first_and_last_runs(const std::vector<std::string>& words) {
+  static const FactWords kFirst = {"ersten", "first", "vorderen", "linken"},
+                         kLast = {"letzten", "last", "hinteren", "rechten", "übrigen", "remaining"};
+  const std::vector<Sense> senses = senses_in(words);
+  if (senses.size() != 2 || senses[0].sense == senses[1].sense ||
+      std::none_of(words.begin(), words.end(), says_runs))
+    return {};
+  StatedDirections stated;
+  std::size_t first = 0, last = 0;
+  for (std::size_t k = 0; k + 1 < words.size(); ++k) {
+    if (kFirst.contains(words[k]) && stated.first_runs == 0)
+      stated.first_runs = count_said(words[k + 1]), first = k;
+    if (kLast.contains(words[k]) && stated.last_runs == 0)
+      stated.last_runs = count_said(words[k + 1]), last = k;
+  }
+  if (stated.first_runs == 0 || stated.last_runs == 0) return {};
+  stated.kind = StatedDirections::Kind::kFirstRuns;
+  stated.first = first < last ? senses[0].sense : senses[1].sense;
+  stated.way = senses[0].way;
+  return stated;
+}
+
+bool says_opposite(const std::vector<std::string>& words) {
+  static const FactWords kOpposite = {"entgegengesetzter", "entgegengesetzte", "umgekehrter",
+                                      "umgekehrte",        "anderer",          "opposite",
+                                      "reverse",           "reversed",         "other"};
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    const std::string word = without_point(words[k]);
+    if (word == "gegenrichtung" || word == "rückhub") return true;
+    const std::string next = k + 1 < words.size() ? without_point(words[k + 1]) : "";
+    if (kOpposite.contains(word) && (next == "richtung" || next == "direction")) return true;
+    if (word == "return" && (next == "stroke" || next == "strokes" || next == "runs" || next == "passes"))
+      return true;
+  }
+  return false;
+}
+
+/// "Läufe 3 und 4 in Gegenrichtung": the other runs go forward.
+StatedDirections runs_against_the_others(const std::vector<std::string>& words) {
+  static const FactWords kTo = {"bis", "to", "through"}, kAnd = {"und", "and", "&", "lauf", "run"};
+  if (!says_opposite(words) || !senses_in(words).empty()) {
+    // "return strokes" has the direction in its word.
+    const std::vector<Sense> senses = senses_in(words);
+    if (!says_opposite(words) ||
+        std::any_of(senses.begin(), senses.end(), [](const Sense& one) { return one.sense > 0; }))
+      return {};
+  }
+  StatedDirections stated;
+  std::size_t k = 0;
+  while (k < words.size() && !(says_runs(words[k]) && k + 1 < words.size() && whole_number(words[k + 1])))
+    ++k;
+  bool range = false;
+  for (++k; k < words.size(); ++k) {
+    const auto run = whole_number(words[k]);
+    if (!run && !kTo.contains(words[k]) && !kAnd.contains(words[k])) break;
+    if (run && range && !stated.of_run.empty())
+      for (int between = stated.of_run.back().first + 1; between < *run; ++between)
+        stated.of_run.emplace_back(between, -1);
+    if (run) stated.of_run.emplace_back(*run, -1);
+    range = kTo.contains(words[k]);
+  }
+  if (stated.of_run.empty()) return {};
+  stated.kind = StatedDirections::Kind::kByNumber;
+  stated.others = 1;
+  stated.assumed = stated.way = true;
+  return stated;
+}
+
+/// "Jeder zweite Lauf in Gegenrichtung", "even-numbered runs are the return strokes", "nach jedem Lauf wurde
+/// die Richtung gewechselt": the first run goes forward.
+StatedDirections every_second_run(const std::vector<std::string>& words) {
+  static const FactWords kEven = {"even", "gerade", "geraden", "geradzahlige", "geradzahligen"},
+                         kOdd = {"odd", "ungerade", "ungeraden", "ungeradzahlige", "ungeradzahligen"},
+                         kEach = {"jeder", "jede", "jeden", "every", "jedem", "each"},
+                         kSecond = {"zweite", "zweiten", "second", "other", "zweiter"},
+                         kBetween = {"nach", "after", "zwischen", "between"};
+  if (any_of(words, {"nicht", "not", "nie", "never", "ohne", "without"}) ||
+      std::none_of(words.begin(), words.end(), says_runs))
+    return {};
+  bool second = false, between = false;
+  for (std::size_t k = 0; k + 1 < words.size(); ++k) {
+    second |= kEach.contains(words[k]) && kSecond.contains(words[k + 1]);
+    between |= kBetween.contains(words[k]) && kEach.contains(words[k + 1]) && k + 2 < words.size() &&
+               says_run(without_point(words[k + 2]));
+  }
+  const bool even = any_of(words, kEven), odd = any_of(words, kOdd);
+  const std::vector<Sense> senses = senses_in(words);
+  const bool forth =
+      std::any_of(senses.begin(), senses.end(), [](const Sense& one) { return one.sense > 0; });
+  const bool back = std::any_of(senses.begin(), senses.end(), [](const Sense& one) { return one.sense < 0; });
+  StatedDirections stated;
+  stated.assumed = stated.way = true;
+  const bool changed =
+      between &&
+      any_of(words, {"richtung", "fahrtrichtung", "direction", "verfahrrichtung", "anfahrrichtung"}) &&
+      starts(words, {"gewechselt", "umgekehrt", "geändert", "umgeschaltet", "change", "revers", "altern",
+                     "switch", "gedreht"});
+  if ((second || even != odd) && !forth && (says_opposite(words) || (back && (even != odd || second)))) {
+    stated.kind = StatedDirections::Kind::kAlternating;
+    stated.first = odd ? -1 : 1;
+  } else if (changed && senses.empty()) {
+    stated.kind = StatedDirections::Kind::kAlternating;
+    stated.first = 1;
+  }
+  return stated.kind == StatedDirections::Kind::kNothing ? StatedDirections{} : stated;
+}
+
 /// True for words of directions that alternate from run to run.
 bool says_alternating(const std::vector<std::string>& words) {
   return starts(words,
@@ -183,6 +317,27 @@ bool says_one_way(const std::vector<std::string>& words) {
   const bool one = any_of(words, {"einer", "one", "gleicher", "same", "single", "derselben"}) &&
                    any_of(words, {"richtung", "direction"});
   return one || starts(words, {"unidirek", "unidirec"});
+}
+
+/// "Spalte zurück von unten nach oben lesen", "return column is listed bottom to top", "Rückweg: der oberste
+/// Wert gehört zur letzten Position".
+bool reads_upwards(const std::vector<std::string>& words) {
+  const bool negated = any_of(words, {"nicht", "not", "kein"});
+  const bool read =
+      any_of(words, {"lesen", "gelesen", "read", "listed", "notiert", "aufgeschrieben", "written",
+                     "eingetragen", "entered", "zu", "spalte", "column", "werte", "values"});
+  for (std::size_t k = 0; k + 2 < words.size(); ++k) {
+    const bool turned =
+        (words[k] == "unten" && words[k + 1] == "nach" && without_point(words[k + 2]) == "oben") ||
+        (words[k] == "bottom" && words[k + 1] == "to" && without_point(words[k + 2]) == "top");
+    if (turned && read && !negated) return true;
+  }
+  const bool top = any_of(words, {"oberste", "oberster", "erste", "erster", "top", "topmost", "first"}),
+             belongs = any_of(words, {"gehört", "belongs", "ist", "is"}),
+             last = any_of(words, {"letzten", "letzte", "last", "größten", "hintersten", "farthest"}),
+             position = any_of(words, {"position", "ziel", "zielposition", "target", "sollposition"}),
+             value = any_of(words, {"wert", "value", "reading", "ablesung", "zeile", "row"});
+  return top && belongs && last && position && value && !negated;
 }
 
 /// True for "previous target", "vorigen Position", "Vorposition": the position before.
@@ -201,14 +356,17 @@ bool names_position_before(const std::vector<std::string>& words) {
 
 }  // namespace
 
-int StatedDirections::of(int run) const {
+int StatedDirections::of(int run, int runs) const {
   switch (kind) {
     case Kind::kAlternating:
       return run % 2 != 0 ? first : -first;
     case Kind::kByNumber:
       for (const auto& [number, sense] : of_run)
         if (number == run) return sense;
-      break;
+      return others;
+    case Kind::kFirstRuns:
+      if (first_runs + last_runs != runs) return 0;
+      return run <= first_runs ? first : -first;
     case Kind::kAll:
       return first;
     case Kind::kNothing:
@@ -220,6 +378,8 @@ int StatedDirections::of(int run) const {
 
 StatedDirections directions_stated(std::string_view text) {
   const std::vector<std::string> words = words_of_sentence(text);
+  for (auto* const rule : {first_and_last_runs, runs_against_the_others, every_second_run})
+    if (StatedDirections stated = rule(words); stated.kind != StatedDirections::Kind::kNothing) return stated;
   const std::vector<Sense> senses = senses_in(words);
   std::set<int> different;
   bool way = false;
@@ -263,6 +423,28 @@ StatedDirections directions_stated(std::string_view text) {
   return stated;
 }
 
+std::map<std::string, int> direction_codes_stated(std::string_view text) {
+  std::string spaced = text::in_small_letters(text);
+  for (const std::string_view minus : {"\u2212", "\u2013"}) text::replace_all(spaced, minus, "-");
+  for (const char* sign : {"=", ":"}) text::replace_all(spaced, sign, std::string(" = "));
+  const std::vector<std::string> words = text::words_in(spaced, " \t,;/()[]\"'");
+  std::map<std::string, int> codes;
+  constexpr std::size_t kLongest = 2;  // letters of a code: "-1", "a"
+  const auto sense = [](const std::string& word) {
+    return word.size() > 2 ? sense_said(without_point(word)) : 0;
+  };
+  for (std::size_t k = 1; k + 1 < words.size(); ++k) {
+    if (words[k] != "=") continue;
+    const std::string &left = words[k - 1], &right = words[k + 1];
+    const bool forth = left.size() <= kLongest && sense(right) != 0;
+    const bool back = right.size() <= kLongest && sense(left) != 0;
+    if (!forth && !back) continue;
+    if (!codes.emplace(forth ? left : right, forth ? sense(right) : sense(left)).second) return {};
+  }
+  if (codes.size() != 2 || codes.begin()->second == codes.rbegin()->second) return {};
+  return codes;
+}
+
 BackOrder back_order_stated(std::string_view text, std::pair<double, double> span) {
   const std::vector<std::string> words = words_of_sentence(text);
   bool back = starts(words, {"rück", "rueck", "return"}) || any_of(words, {"zurück", "zurueck"}),
@@ -291,6 +473,7 @@ BackOrder back_order_stated(std::string_view text, std::pair<double, double> spa
   const bool listed =
       any_of(words, {"werte", "values", "spalte", "column", "readings", "messwerte", "anzeigen"});
   if (rises && !falls) return BackOrder::kNothing;  // in the order of the positions
+  if (back && !forth && reads_upwards(words)) return BackOrder::kReversed;
   // "Messreihenfolge: Rücklauf zuerst" and "nicht in der Reihenfolge" state another thing.
   const bool other =
       turned || any_of(words, {"zuerst", "danach", "dann", "first", "then", "nicht", "not", "kein"});
@@ -302,6 +485,7 @@ BackOrder back_order_stated(std::string_view text, std::pair<double, double> spa
 
 bool states_increments(std::string_view text, bool heading) {
   const std::vector<std::string> words = words_of_sentence(text);
+  if (reads_upwards(words)) return false;  // "der oberste Wert gehört zur letzten Position"
   if (names_position_before(words)) return true;
   if (starts(words, {"schrittfehler", "schrittabweich", "schrittdiff", "einzelschrittfehler",
                      "einzelschrittabweich", "inkrementfehler", "inkrementabweich"}))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Approach directions and the order of readings that a text beside a table states in words.
 #pragma once
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,20 +15,30 @@ struct StatedDirections {
   /// 3 vorwärts, 2 und 4 rückwärts". kAll: "alle Läufe vorwärts". kUnclear: the text is about alternating or
   /// equal directions, but does not state which one the first run has: "unidirektional".
   /// kNothing: the text is about something else.
-  enum class Kind { kNothing, kAlternating, kByNumber, kAll, kUnclear };
+  /// kFirstRuns: "die ersten beiden Spalten vorwärts, die letzten beiden rückwärts".
+  enum class Kind { kNothing, kAlternating, kByNumber, kFirstRuns, kAll, kUnclear };
   Kind kind = Kind::kNothing;
   int first = 0;  // of the first run and of odd runs, or of all runs; 0: not stated
   std::vector<std::pair<int, int>> of_run{};  // kByNumber: runs and their directions
-  bool one_way = false;                       // kUnclear: all runs have one direction
+  int others = 0;  // kByNumber: direction of the runs that the text does not name; 0: not stated
+  int first_runs = 0, last_runs = 0;  // kFirstRuns: numbers of runs at the begin and at the end
+  bool assumed = false;               // the text states changes only: the first run is taken as forward
+  bool one_way = false;               // kUnclear: all runs have one direction
   bool count = false;  // kUnclear: numbers of runs in each direction, "3 Läufe vorwärts, 3 zurück"
   bool way = false;    // the direction is that of the survey: "hin", "forward"
 
-  /// Returns the direction of the run with this number; 0: the text does not state one.
-  int of(int run) const;
+  /// Returns the direction of the run with this number; 0: the text does not state one. `runs`: number of
+  /// runs of the table.
+  int of(int run, int runs = 0) const;
 };
 
 /// Returns the directions that a text states for several runs.
 StatedDirections directions_stated(std::string_view text);
+
+/// Returns the meaning of the codes of a column of directions that a text states, by the code in small
+/// letters: "1 = rückwärts, 2 = vorwärts". Empty: the text does not state two codes with different
+/// directions.
+std::map<std::string, int> direction_codes_stated(std::string_view text);
 
 /// The order of the readings of the way back in a table with a column for each direction.
 enum class BackOrder {

@@ -63,7 +63,8 @@ std::vector<TableText> texts_about(const sheet::Sheet& sheet, const sheet::Sheet
     std::string label;
     for (const std::string& cell : sheet.rows[row]) {
       if (cell.size() < kShortestText || sheet::plain_number(cell, sheet.decimal_comma)) continue;
-      texts.push_back({sheet.line[row], label + cell});
+      const bool in_row = row >= table.first_data && sheet::is_row_of_data(sheet, row);
+      texts.push_back({sheet.line[row], label + cell, "", in_row});
       label = label_of_sign(cell);
     }
   }
@@ -73,6 +74,19 @@ std::vector<TableText> texts_about(const sheet::Sheet& sheet, const sheet::Sheet
     if (other.table) continue;
     texts.push_back({0, label + other.text, other.sheet});
     label = label_of_sign(other.text);
+  }
+  return texts;
+}
+
+std::vector<TableText> sentences_about(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  std::vector<TableText> texts = texts_about(sheet, table);
+  const std::size_t end = table.has_headings ? table.heading_row : 0;  // an upper line of headings too
+  for (std::size_t row = 0; row < end; ++row) {
+    std::vector<std::string> cells;
+    for (const std::string& cell : sheet.rows[row])
+      if (!cell.empty()) cells.push_back(cell);
+    if (cells.size() > 1 || (table.upper_row && row == *table.upper_row))
+      texts.push_back({sheet.line[row], text::joined(cells, ", ")});
   }
   return texts;
 }
