@@ -174,7 +174,8 @@ const std::vector<DoubtRule>& rules() {
        "fehler|*fehler|deviat|abweich|*abweichung|anzeige|display|amount|betrag|beträge|machine|maschine|"
        "tisch|schlitten|slide|carriage|punkt|=point|=points|sample|probe",
        "kalibr|calibr|durchgeführt|carried~out|performed|bediener|operator|warmgel|warmed|export|erstellt|"
-       "created|generated|gespeichert|saved|ausgewertet|evaluated|=iso|vdi|geprüft|checked|approved|"
+       "created|generated|gespeichert|saved|ausgewertet|evaluated|=iso|vdi|geprüft|checked|umdrehung|=turn|"
+       "generated|approved|"
        "gereinigt|justier|adjusted|aligned|halle|=hall|raum|=room|standort|"
        "cleaned|=#unit"}};
   return kRules;
