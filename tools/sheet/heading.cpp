@@ -306,7 +306,8 @@ void refuse_rows_of_words(const Sheet& sheet) {
                            "a colon cannot separate columns; save the table with semicolons or tabs");
   for (std::size_t row = 0; row < sheet.rows.size(); ++row)
     for (const std::string& cell : sheet.rows[row])
-      if (cell.starts_with('\'') && plain_number(cell.substr(1), sheet.decimal_comma))
+      if (cell.starts_with('\'') &&
+          (plain_number(cell.substr(1), true) || plain_number(cell.substr(1), false)))
         throw text::InputError(
             {sheet.file, sheet.line[row]}, cell,
             "an apostrophe before a number, by which a spreadsheet marks a text: delete the "

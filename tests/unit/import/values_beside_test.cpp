@@ -26,7 +26,8 @@ TEST(ValuesBeside, ADialThatPassedZeroIsRefused) {
   EXPECT_THAT(read("Soll X [mm];Messuhr [1/100 mm]\n" + rows),
               AllOf(StartsWith("refused: "), HasSubstr("(97 becomes -3)"), Not(HasSubstr("--deviation"))));
   const std::string own = "X [mm];Abweichung Messuhr [1/100 mm]\n" + rows;
-  EXPECT_THAT(read(own), AllOf(StartsWith("refused: "), HasSubstr("subtract 100 from each value in the file from this row on")));
+  EXPECT_THAT(read(own), AllOf(StartsWith("refused: "),
+                               HasSubstr("subtract 100 from each value in the file from this row on")));
   // The user says that the values are right.
   SheetWords words;
   words.deviations = {"X[0.01mm]=Abweichung Messuhr [1/100 mm]"};

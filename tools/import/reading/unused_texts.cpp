@@ -11,6 +11,7 @@
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/words/doubtful_words.h"
 #include "tools/import/words/sheet_words.h"
+#include "tools/import/words/sign_words.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -93,8 +94,10 @@ void note_unused_texts(sheet::Sheet& sheet, const sheet::SheetTable& table,
     std::set<Doubtful> subjects = doubtful_in(one.text);
     // A cover sheet has many names; a remark in a row is about the row.
     const bool way = directed && names_way(one.text);  // the headings state the directions
+    const bool sign = sign_said(one.text, SignPlace::kTitle) != SignSaid::kNothing;  // a rule reads it
     const bool other =
-        !way && (subjects.contains(Doubtful::kSentence) || (one.line > 0 && !is_of_a_protocol(one.text)));
+        !way && !sign &&
+        (subjects.contains(Doubtful::kSentence) || (one.line > 0 && !is_of_a_protocol(one.text)));
     if (subjects.erase(Doubtful::kSentence);
         subjects.empty() && other && !one.in_row &&
         std::find(sentences.begin(), sentences.end(), quoted_text(one)) == sentences.end())
