@@ -243,15 +243,15 @@ std::string columns_to_try(const std::string& text, const std::string& file, con
     const std::string small = text::in_small_letters(heading.name);
     if (k == 0 && !is_number(second[k])) {
       words += fmt::format(" --column \"{}=point\"", first[k]);
-    } else if (small == "x" || small == "y" || small == "z") {
+    } else if (std::find(std::begin(format::columns::kPoint), std::end(format::columns::kPoint), small) !=
+               std::end(format::columns::kPoint)) {
       words +=
           fmt::format(" --column \"{}={}[{}]\"", first[k], small, heading.unit.empty() ? "mm" : heading.unit);
       comma = comma || !number_cell(second[k], false);
       ++coordinates;
     }
   }
-  constexpr std::size_t kOfPoint = 3;
-  return coordinates == kOfPoint ? words + (comma ? " --decimal comma" : "") : "";
+  return coordinates == std::size(format::columns::kPoint) ? words + (comma ? " --decimal comma" : "") : "";
 }
 
 ImportTable mapped_table(const std::string& text, const std::string& file, const ColumnMap& map) {
