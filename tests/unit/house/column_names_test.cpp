@@ -170,6 +170,8 @@ TEST(ColumnNames, StandInToolsFormatAlone) {
       {"tools/create/urdf.cpp", {"d"}},                                   // the same, in names of statics
       {"tools/effects/candidate.cpp", {"from"}},                          // a placeholder of an effect's term
       {"tools/tolerance/machine_sources.cpp", {"from"}},                  // the same
+      {"tools/import/words/doubtful_words.cpp", {"x"}},                   // "2 x": times
+      {"tools/import/words/stated_directions.cpp", {"from"}},             // "from below"
       {"tools/lint/machine_lint.cpp", {"run"}},                           // an attribute of the machine file
       {"tools/model/machine_reader.cpp", {"u", "from", "run", "setup"}},  // attributes of the machine file
       {"tools/sheet/workbook.cpp", {"t"}}};                               // an element of a workbook's XML

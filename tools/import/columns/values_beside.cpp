@@ -178,7 +178,7 @@ std::string several_deviations(const sheet::Sheet& sheet, const sheet::SheetTabl
     if (!small.empty() && units[small.front()] != units[k]) return "";
     small.push_back(k);
   }
-  constexpr std::size_t kFewest = 2;
+  constexpr std::size_t kFewest = 2;  // columns; one alone may be what the user wants
   if (small.size() < kFewest) return "";
   std::string names;
   for (const std::size_t k : small)
