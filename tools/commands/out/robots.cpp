@@ -47,9 +47,11 @@ void export_urdf(const ExchangeArguments& arguments) {
     for (double& one : tool) one = std::abs(one) < kShown_mm ? 0 : one;
     fmt::print(
         human_stream(arguments.json),
-        "the joints of {} are calibrated up to the link {}{}; the tool point of the machine file is at "
+        "the joints of {} are {} up to the link {}{}; the tool point of the machine file is at "
         "{:.4f}, {:.4f}, {:.4f} mm in this link\n",
-        arguments.original, file.original->tip,
+        arguments.original,
+        machine.fitted ? "calibrated" : "those of the machine file, which no fit wrote (not calibrated),",
+        file.original->tip,
         file.original->added_tip ? " (new, because the last joint of the arm ends at the tip)" : "", tool[0],
         tool[1], tool[2]);
     tip = {{"link", file.original->tip}, {"added", file.original->added_tip}, {"tool_mm", three_json(tool)}};

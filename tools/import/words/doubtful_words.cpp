@@ -343,7 +343,10 @@ std::set<Doubtful> doubtful_in(std::string_view text) {
   return found;
 }
 
-bool is_of_a_protocol(std::string_view text) {
+namespace {
+
+/// is_of_a_protocol() of a part of a text without punctuation.
+bool clause_of_a_protocol(std::string_view text) {
   static const std::string kOfProtocol =
       "geprüft|checked|bearbeitungs|baujahr|quick|xcal|qc20|sample|averag|refraction|=air|start|umrichter|*"
       "geber|*maßstab|"
@@ -372,9 +375,10 @@ bool is_of_a_protocol(std::string_view text) {
       "für",  "the", "and",       "for", "with",  "from",  "auf", "bis",   "zur", "zum",  "aus",  "ein",
       "eine", "min", "according", "per", "above", "below", "not", "nicht", "nur", "alle", "all"};
   const std::vector<std::string> words = words_of_doubt(text);
-  if (marks_of(words).contains("#unit")) return true;  // "all values in µm"
-  constexpr std::size_t kWordsForEach = 5;             // of a sentence, for each word of a protocol
-  std::size_t known = 0;
+  constexpr std::size_t kWordsForEach = 4;  // of a sentence, for each word of a protocol
+  constexpr std::size_t kWithUnit = 4;      // words: "all values are given in µm"
+  const bool unit = marks_of(words).contains("#unit");
+  std::size_t known = unit ? 1 : 0;
   std::set<std::string> others;
   for (const std::string& word : words) {
     const bool letters =
@@ -384,7 +388,20 @@ bool is_of_a_protocol(std::string_view text) {
     else if (letters)
       others.insert(word);
   }
-  return others.size() + known < 2 || kWordsForEach * known >= others.size() + known;
+  return others.size() + known < 2 || (unit && others.size() <= kWithUnit) ||
+         kWordsForEach * known >= others.size() + known;
+}
+
+}  // namespace
+
+bool is_of_a_protocol(std::string_view text) {
+  // "Laser XL-80, the direction is turned round": what stands behind a comma is another matter.
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(",;()", from), text.size());
+    if (!clause_of_a_protocol(text.substr(from, end - from))) return false;
+    from = end + 1;
+  }
+  return true;
 }
 
 bool may_state(std::string_view text, Doubtful subject) { return doubtful_in(text).contains(subject); }

@@ -87,8 +87,12 @@ const ofPreview = (preview) => ({
   separator: preview.separator === 'blanks' ? 'space' : preview.separator,
   decimal: preview.decimal,
   skip: (preview.heading_line ?? 1) - 1,
-  header: true,
-  column: preview.columns.filter((one) => one.use === 'column').map((one) => `${one.heading}=${withUnit(one)}`),
+  // A table without headings has none: the first point must not be taken for them.
+  header: preview.heading_line != null,
+  column: preview.columns
+    .map((one, k) => [one, preview.heading_line != null ? one.heading : `${k + 1}`])
+    .filter(([one]) => one.use === 'column')
+    .map(([one, source]) => `${source}=${withUnit(one)}`),
 });
 
 /** One column: its heading, its first cells, and what it is; a change is a wish. */
