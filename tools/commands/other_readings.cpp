@@ -72,8 +72,8 @@ bool within_travel(const model::Axis& axis, const model::Column& positions) {
   return (!axis.min || positions.minCoeff() >= *axis.min) && (!axis.max || positions.maxCoeff() <= *axis.max);
 }
 
-/// The joints and their changes with which the given machine with a fitted set-up explains the readings far
-/// better; empty if there is none.
+/// A sentence about the changes of a joint that bring the readings far nearer to the given machine with a
+/// fitted set-up; empty: no change does.
 std::string joints_that_differ(const model::Machine& machine, const model::Measurement& m) {
   constexpr double kAsGood = 1.2;  // times the smallest residual: two changes can be equivalent
   const std::optional<double> own = rms_of_nominal_um(machine, m);

@@ -93,12 +93,7 @@ double excess(const Squares& one) {
 double repeated_poses(const model::Measurement& m) {
   std::vector<model::Column> axes;
   for (std::size_t a = 0; a < m.states.axis.size(); ++a) axes.push_back(model::commanded(m, a));
-  const auto pose = [&](std::size_t row) {
-    std::vector<std::int64_t> key;
-    constexpr double kSame = 1e4;  // 0.1 um, 0.0001 deg
-    for (const model::Column& q : axes) key.push_back(std::llround(kSame * q[static_cast<Index>(row)]));
-    return key;
-  };
+  const auto pose = [&](std::size_t row) { return rounded_values(axes, row); };
   std::set<std::vector<std::int64_t>> fitted;
   for (std::size_t row = 0; row < m.rows(); ++row)
     if (m.check[row] == 0) fitted.insert(pose(row));

@@ -9,6 +9,7 @@
 #include <map>
 #include <tuple>
 
+#include "tools/maths/factors.h"
 #include "tools/maths/median.h"
 
 namespace vernier::fit {
@@ -24,11 +25,10 @@ constexpr double kFar = 10;
 constexpr double kLeast_mm = 0.1;
 /// The same where neither u nor other repeated poses show the noise of the instrument, mm.
 constexpr double kLeastUnknown_mm = 0.5;
-constexpr double kUm = 1e3;  // um in a mm
 /// Repeated poses that show what is usual.
 constexpr std::size_t kPoses = 4;
 
-/// Everything that has to be equal in two rows at one pose; numbers in steps of `kSame`.
+/// Everything that has to be equal in two rows at one pose; numbers as of rounded_values().
 struct Pose {
   std::size_t file = 0, setup = 0, thing = 0;
   std::vector<std::int64_t> numbers;
@@ -40,13 +40,11 @@ struct Pose {
 };
 
 Pose pose_of(const model::Measurement& m, const std::vector<model::Column>& commanded, std::size_t row) {
-  constexpr double kSame = 1e4;  // 0.1 um, 0.0001 deg
   const model::States& s = m.states;
   Pose pose{
       m.file[row], s.of(s.setup, row), m.thing_of(row), {}, m.corrected.empty() ? "" : m.corrected[row]};
   for (const auto& list : {std::cref(commanded), std::cref(s.direction), std::cref(s.input)})
-    for (const model::Column& column : list.get())
-      pose.numbers.push_back(std::llround(kSame * column[static_cast<Index>(row)]));
+    for (const std::int64_t value : rounded_values(list.get(), row)) pose.numbers.push_back(value);
   return pose;
 }
 
@@ -90,7 +88,7 @@ void add_repeats(const model::Measurement& m, const std::vector<Vector3d>& point
                  const std::vector<std::size_t>& rows, std::vector<Repeat>& list) {
   const auto u = [&](std::size_t row) { return m.uncertainty[static_cast<Index>(row)]; };
   if (rows.size() == 2) {
-    list.push_back({{rows[1], rows[0], kUm * apart_mm(points[rows[0]], points[rows[1]])},
+    list.push_back({{rows[1], rows[0], maths::kUmPerMm * apart_mm(points[rows[0]], points[rows[1]])},
                     0,
                     std::hypot(u(rows[0]), u(rows[1]))});
     return;
@@ -103,10 +101,19 @@ void add_repeats(const model::Measurement& m, const std::vector<Vector3d>& point
   const double usual = maths::median(far);
   for (const std::size_t row : rows)
     if (row != nearest)
-      list.push_back({{row, nearest, kUm * apart_mm(points[row], points[nearest])}, usual, u(row)});
+      list.push_back(
+          {{row, nearest, maths::kUmPerMm * apart_mm(points[row], points[nearest])}, usual, u(row)});
 }
 
 }  // namespace
+
+std::vector<std::int64_t> rounded_values(const std::vector<model::Column>& columns, std::size_t row) {
+  constexpr double kSame = 1e4;  // 0.1 um, 0.0001 deg
+  std::vector<std::int64_t> values;
+  for (const model::Column& column : columns)
+    values.push_back(std::llround(kSame * column[static_cast<Index>(row)]));
+  return values;
+}
 
 std::vector<ContradictingRows> contradicting_rows(const model::Measurement& m) {
   std::vector<model::Column> commanded;
@@ -122,7 +129,8 @@ std::vector<ContradictingRows> contradicting_rows(const model::Measurement& m) {
     const std::size_t first = repeats.size();
     add_repeats(m, points, rows, repeats);
     std::vector<double> apart;
-    for (std::size_t k = first; k < repeats.size(); ++k) apart.push_back(repeats[k].rows.apart_um / kUm);
+    for (std::size_t k = first; k < repeats.size(); ++k)
+      apart.push_back(repeats[k].rows.apart_um / maths::kUmPerMm);
     usual.push_back(maths::median(std::move(apart)));
   }
   const std::size_t n_poses = usual.size();
@@ -132,7 +140,7 @@ std::vector<ContradictingRows> contradicting_rows(const model::Measurement& m) {
     const bool known = one.u_mm > 0 || one.usual_mm > 0 || n_poses >= kPoses;
     const double limit_mm = std::max(
         {known ? kLeast_mm : kLeastUnknown_mm, kFar * one.u_mm, kFar * one.usual_mm, kFar * usual_mm});
-    if (one.rows.apart_um > kUm * limit_mm) list.push_back(one.rows);
+    if (one.rows.apart_um > maths::kUmPerMm * limit_mm) list.push_back(one.rows);
   }
   std::stable_sort(list.begin(), list.end(),
                    [](const auto& a, const auto& b) { return a.apart_um > b.apart_um; });

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "tools/model/measurement.h"
 
 namespace vernier::fit {
+
+/// Returns the values of the columns in a row (mm, deg or the unit of an input) in steps of 0.1 um, 0.0001
+/// deg: rows at one pose have the same values.
+std::vector<std::int64_t> rounded_values(const std::vector<model::Column>& columns, std::size_t row);
 
 /// Two rows at one pose whose measured points cannot both be right.
 struct ContradictingRows {

@@ -83,17 +83,20 @@ const axesOf = (machine) =>
   );
 
 /** The options of an import without the preview's help: a tracker's and a probe's table. */
-const ofPreview = (preview) => ({
-  separator: preview.separator === 'blanks' ? 'space' : preview.separator,
-  decimal: preview.decimal,
-  skip: (preview.heading_line ?? 1) - 1,
+function ofPreview(preview) {
   // A table without headings has none: the first point must not be taken for them.
-  header: preview.heading_line != null,
-  column: preview.columns
-    .map((one, k) => [one, preview.heading_line != null ? one.heading : `${k + 1}`])
-    .filter(([one]) => one.use === 'column')
-    .map(([one, source]) => `${source}=${withUnit(one)}`),
-});
+  const named = preview.heading_line != null;
+  return {
+    separator: preview.separator === 'blanks' ? 'space' : preview.separator,
+    decimal: preview.decimal,
+    skip: named ? preview.heading_line - 1 : 0,
+    header: named,
+    column: preview.columns
+      .map((one, k) => ({ ...one, source: named ? one.heading : k + 1 }))
+      .filter((one) => one.use === 'column')
+      .map((one) => `${one.source}=${withUnit(one)}`),
+  };
+}
 
 /** One column: its heading, its first cells, and what it is; a change is a wish. */
 function columnRow(column, k, preview, change) {
