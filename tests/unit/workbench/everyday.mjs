@@ -664,7 +664,10 @@ async function unknownTool(page) {
   await page.click('#fit');
   await words(page, '#fit-notes', 'The tool point of the machine file is probably not that of the measurement');
   await page.click('#fit-tool');
-  await page.until("document.getElementById('command').textContent.includes('--free TPX,TPY,TPZ')", 'the fit of the tool point');
+  await page.until(
+    "[...document.querySelectorAll('#history code')].some((one) => one.textContent.includes('--free TPX,TPY,TPZ'))",
+    'the fit of the tool point',
+  );
   await chosen(page, 'arm-fitted-3.xml');
   await page.until("document.getElementById('fit-notes').textContent === ''", 'the note to go');
 }

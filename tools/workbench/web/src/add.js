@@ -7,9 +7,8 @@ import { button, gate, guarded, needsSubject, panel, programWords, showError } f
 import { moreOptions } from './options.js';
 import { parameterPanel } from './parameters.js';
 import { redrawAll } from './plot.js';
-import { choose } from './project.js';
 import { declareReflector, kReflector, needsReflector, stemOf } from './reflector.js';
-import { along, compared, loadRows, measured, setResiduals, subject } from './rows.js';
+import { along, choose, compared, loadRows, measured, setResiduals, subject } from './rows.js';
 import { scatter } from './scatter.js';
 import { emit, on, store } from './store.js';
 import { termPanel } from './term.js';

@@ -7,25 +7,13 @@ import { optionFields } from './options.js';
 import { button, guarded, panel, showError } from './parts.js';
 import { kReflector } from './reflector.js';
 import { lintPanel } from './lint.js';
-import { loadRows } from './rows.js';
+import { choose } from './rows.js';
 import { importSheet } from './sheet.js';
 import { stoodPanel } from './stood.js';
 import { on, store } from './store.js';
 import { adviceOn, forget, kindAction, kindOf, kindOfName, kindWords, readInto, sourceOf } from './uses.js';
 
 const size = (bytes) => (bytes < 10000 ? `${bytes} B` : bytes < 1e7 ? `${Math.round(bytes / 1000)} kB` : `${Math.round(bytes / 1e6)} MB`);
-
-/** Choose what everything else is about. */
-export async function choose(machine, measurements) {
-  store.machine = machine;
-  store.measurements = measurements;
-  try {
-    localStorage.setItem(`chosen:${store.folder}`, JSON.stringify({ machine, measurements }));
-  } catch {
-    /* private mode */
-  }
-  await loadRows();
-}
 
 /**
  * Makes a measurement of a file of the project, as its kind asks for. `beside`: measurements to use with it; `again`: a table is

@@ -149,3 +149,15 @@ export function lineWords(lines) {
   }
   return parts.join(',');
 }
+
+/** Choose what everything else is about. */
+export async function choose(machine, measurements) {
+  store.machine = machine;
+  store.measurements = measurements;
+  try {
+    localStorage.setItem(`chosen:${store.folder}`, JSON.stringify({ machine, measurements }));
+  } catch {
+    /* private mode */
+  }
+  await loadRows();
+}

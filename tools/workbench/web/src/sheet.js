@@ -5,7 +5,7 @@ import { byMachine, kNames } from './joints.js';
 import { optionFields } from './options.js';
 import { button, gate, guarded, pageWords, panel } from './parts.js';
 import { pointFields, pointsOnPage, pointWords } from './points.js';
-import { choose } from './project.js';
+import { choose } from './rows.js';
 import { declareReflector, kReflector } from './reflector.js';
 import { on, store } from './store.js';
 
