@@ -486,6 +486,24 @@ Heading parse_heading(std::string_view cell) {
   return heading;
 }
 
+namespace {
+
+/// True for a row with one text of several words above rows with several cells: a title, or headings with
+/// another separator.
+bool is_title_alone(const Sheet& sheet, std::size_t row, std::size_t first) {
+  constexpr std::size_t kFewestWords = 4;  // a heading alone in its line has fewer
+  const auto filled = [&](std::size_t of) {
+    return std::count_if(sheet.rows[of].begin(), sheet.rows[of].end(),
+                         [](const std::string& cell) { return !cell.empty(); });
+  };
+  if (sheet.workbook || filled(row) != 1 || filled(first) < 2) return false;
+  const auto cell = std::find_if(sheet.rows[row].begin(), sheet.rows[row].end(),
+                                 [](const std::string& one) { return !one.empty(); });
+  return text::words_in(*cell, " \t,;|").size() >= kFewestWords;
+}
+
+}  // namespace
+
 SheetTable parts_of_sheet(const Sheet& sheet) {
   SheetTable table;
   std::size_t first = 0;
@@ -494,7 +512,7 @@ SheetTable parts_of_sheet(const Sheet& sheet) {
   table.first_data = first;
   std::size_t heading = first;
   if (heading > 0 && is_units(sheet.rows[heading - 1])) table.units_row = --heading;
-  if (heading > 0) {
+  if (heading > 0 && !is_title_alone(sheet, heading - 1, first)) {
     table.has_headings = true;
     table.heading_row = heading - 1;
   } else {

@@ -117,9 +117,7 @@ const Case kCases[] = {
     {"PositivWennZuKurz", "Bemerkung: positiv, wenn zu kurz\nSoll X [mm];Abweichung X [um]\n100;1,5\n200;1\n",
      "X[mm],x[mm]\n100,99.9985\n200,199.999\nnote: "},
     {"TheSignBelowTheTable", "Soll X [mm];Fehler X [um]\n100;1,5\n200;2\n\nBemerkung: Fehler = Soll - Ist\n",
-     "X[mm],x[mm]\n100,99.9985\n200,199.998\nnote: line 5: \"Bemerkung: Fehler = Soll - Ist\" is a text "
-     "below the "
-     "table and is omitted\nnote: the sign of the deviations is nominal - actual"},
+     "X[mm],x[mm]\n100,99.9985\n200,199.998\nnote: the sign of the deviations is nominal - actual"},
     // Directions.
     {"NoughtIsTheAscendingDirection",
      "X [mm];x [mm];Richtung\n0;0,1;0\n1;1,1;0\n2;2,1;0\n2;2,2;1\n1;1,2;1\n0;0,2;1\n",

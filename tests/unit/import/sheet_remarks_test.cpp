@@ -95,7 +95,7 @@ TEST(SheetRemarks, ATitleStatesTheDirectionOfTheOnlyTable) {
               StartsWith("X[mm],run,x[mm],dirX\n0,1,0.001,1\n"));
   for (const char* const title : {"-", "Pos", "auf", "Messung 3", "Achse X", "Richtung X- und X+"})
     EXPECT_THAT(read(std::string(title) + "\n" + up),
-                AllOf(StartsWith("X[mm],x[mm]\n"), Not(HasSubstr("note"))))
+                AllOf(StartsWith("X[mm],x[mm]\n"), Not(HasSubstr("states"))))
         << title;
   EXPECT_THAT(read("Hinfahrt\nX [mm];dX [um]\n0;1\n50;2\n100;3\n100;4\n50;3\n0;2\n"),
               AllOf(StartsWith("X[mm],x[mm]\n"), HasSubstr("the rows of the table go in both")));

@@ -15,6 +15,7 @@ namespace vernier::sheet_shape_test {
 using namespace vernier::importer;
 using testing::HasSubstr;
 using testing::Not;
+using vernier::importer_test::beside_the_table;
 using vernier::importer_test::read;
 namespace {
 
@@ -268,7 +269,8 @@ TEST(SheetTitle, TheRunOfATitleIsReadWithItsTable) {
   words.table = 2;
   EXPECT_EQ(read(tables, words),
             "X[mm],x[mm],dirX,run\n100,100.005,-1,2\n50,50.004,-1,2\n0,0.003,-1,2\nnote: the title \"Lauf 2 "
-            "rückwärts\" states the run 2 and the approach direction - of this table: each row gets both\n");
+            "rückwärts\" states the run 2 and the approach direction - of this table: each row gets both\n" +
+                beside_the_table("line 1 \"Lauf 1 vorwärts\""));
   words.constants = {"run=b"};
   EXPECT_THAT(read(tables, words), testing::StartsWith("X[mm],x[mm],dirX,run\n100,100.005,-1,b\n"));
 }
@@ -311,9 +313,9 @@ TEST(SheetRows, RunsSideBySideWithTheirPositionsAreReadOneBelowTheOther) {
 TEST(SheetRows, TextsBelowAreOmittedBesideAComputedRow) {
   EXPECT_EQ(
       read("Soll X [mm];Ist X [mm]\n0;0,001\n50;50,002\n\n-;-\ngeprüft: Huber;\nMax. Abweichung [µm];18,5\n"),
-      "X[mm],x[mm]\n0,0.001\n50,50.002\nnote: line 6: \"geprüft: Huber\" is a text below the table and is "
-      "omitted\nnote: line 7: the row \"Max. Abweichung [µm]\" is computed from the rows above it and is "
-      "omitted\n");
+      "X[mm],x[mm]\n0,0.001\n50,50.002\nnote: line 7: the row \"Max. Abweichung [µm]\" is computed from the "
+      "rows above it and is omitted\n" +
+          beside_the_table("line 6 \"geprüft: Huber\""));
 }
 
 TEST(SheetCells, DegreesMinutesAndSecondsAreDecimalDegrees) {
@@ -327,6 +329,24 @@ TEST(SheetWordsOfOtherLanguages, FrenchHeadingsAreRead) {
   EXPECT_THAT(read("Cote X (mm);Écart X (µm)\n0;1\n50;2\n"), testing::StartsWith("X[mm],x[mm]\n0,0.001\n"));
 }
 
+TEST(SheetRemedy, OneTextAboveSeveralColumnsIsNoHeading) {
+  for (const char* title : {"Achse X, Position mm, Abweichung µm", "Position mm, Abweichung µm"})
+    EXPECT_THAT(read(std::string(title) + "\n0;0,4\n60;2,1\n120;-1,3\n180;3,8\n"),
+                HasSubstr("such as --column \"X[mm]=1\" --deviation \"X[um]=2\""));
+  SheetWords words;
+  words.columns = {"X[mm]=1"};
+  words.deviations = {"X[um]=2"};
+  EXPECT_THAT(read("Position mm, Abweichung µm\n0;0,4\n60;2,1\n120;-1,3\n180;3,8\n", words),
+              AllOf(testing::StartsWith("X[mm],x[mm]\n0,0.0004\n60,60.0021\n"),
+                    HasSubstr("is one text above 2 columns")));
+}
+
+TEST(SheetRemedy, AUnitForAllIsNotNamedBesideAnotherUnit) {
+  EXPECT_THAT(read("everything metric, errors in microns\nX target;Deviation X\n0;0.4\n60;2.1\n120;-1.3\n"),
+              AllOf(HasSubstr("no unit: give it for each, such as --column \"X[mm]=X target\""),
+                    testing::Not(HasSubstr("--unit"))));
+}
+
 TEST(SheetRemedy, TheValuesDecideWhichAssignmentIsNamed) {
   const auto table = [](const std::string& heading, const std::vector<std::string>& cells) {
     std::string text = heading + "\n";
@@ -335,7 +355,9 @@ TEST(SheetRemedy, TheValuesDecideWhichAssignmentIsNamed) {
   };
   EXPECT_THAT(read(table("X [mm];Mittelwert [um]", {"1", "2", "4", "3"})),
               HasSubstr("such as --deviation \"X=Mittelwert [um]\" (the values are small compared with the "
-                        "positions: deviations);"));
+                        "positions) if they are deviations, actual - nominal; for nominal - actual, such as "
+                        "corrections or remaining distances, add --sign nominal-actual; sum changes from row "
+                        "to row in the file first;"));
   EXPECT_THAT(read(table("X [mm];Wert [mm]", {"0,001", "50,002", "100,003", "150,002"})),
               HasSubstr("such as --column \"x=Wert [mm]\" (the values follow the positions);"));
   EXPECT_THAT(read(table("X [mm];Schrittweite ist [mm]", {"0,0000", "50,0020", "50,0030", "49,9980"})),

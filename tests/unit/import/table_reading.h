@@ -19,4 +19,12 @@ inline std::string read(const std::string& bytes, const importer::SheetWords& wo
   }
 }
 
+/// The note of read() about the texts beside a table, given as it quotes them.
+inline std::string beside_the_table(const std::string& texts) {
+  return "note: beside the table: " + texts +
+         ". Does one of these texts change values, their sign (--sign) or unit, positions, or the order or "
+         "way "
+         "of a run? Then change the file accordingly\n";
+}
+
 }  // namespace vernier::importer_test

@@ -82,7 +82,7 @@ TEST(TitlePositions, AnOptionAndAColumnHavePriority) {
   SheetWords words;
   words.constants = {"X[mm]=300"};
   EXPECT_THAT(read("Achse Y bei X=250 mm\n" + kTable, words),
-              AllOf(StartsWith("Y[mm],y[mm],X[mm]\n0,0.001,300\n"), Not(HasSubstr("note"))));
+              AllOf(StartsWith("Y[mm],y[mm],X[mm]\n0,0.001,300\n"), Not(HasSubstr("states"))));
   EXPECT_THAT(read("Start: X=0, Y=100\nX [mm];dX [um]\n0;1\n50;2\n"),
               StartsWith("X[mm],x[mm],Y[mm]\n0,0.001,100\n"));
 }

@@ -54,7 +54,10 @@ TEST(UnusedTexts, OfOtherSubjectsHaveANoteWithTheChangeToMake) {
         std::pair("Nullpunkt der Liste liegt bei X = 150 mm", "another zero point"),
         std::pair("Maschinenkoordinate = Pos + 120 mm", "another zero point"),
         std::pair("Positionen in Zoll", "write [in] in place of the unit"),
-        std::pair("Den vierten Durchlauf bitte nicht mitnehmen.", "does not understand this")}) {
+        std::pair("Spalte 2 ist in Zehntel Mikrometer zu verstehen.", "write [0.1um] in place of the unit"),
+        std::pair("Date: 3 Nov 2026, displayed in tenths of a micron", "write [0.1um] in place of the unit"),
+        std::pair("Die zweite Spalte wurde beim Rücklauf notiert, also beginnend am fernen Ende.",
+                  "reverse the order of the values")}) {
     EXPECT_THAT(
         read(std::string(text) + "\n" + kTable),
         AllOf(StartsWith("X[mm],"), HasSubstr(std::string("line 1: the text \"") + text), HasSubstr(note)))
@@ -67,7 +70,32 @@ TEST(UnusedTexts, OfOtherSubjectsHaveANoteWithTheChangeToMake) {
       HasSubstr("line 3: the text \"Messuhr neu genullt\" may state another zero point"));
 }
 
-TEST(UnusedTexts, OfAProtocolHaveNoNote) {
+TEST(UnusedTexts, ThatNoRuleKnowsAreQuotedInOneNote) {
+  for (const char* text :
+       {"Den vierten Durchlauf bitte nicht mitnehmen.",
+        "Prüfer: K. Lenz (notiert, um wie viel nachzustellen ist)",
+        "Temperatur 20,1 °C - Ausgabe des Lasers in Nanometern",
+        "Standard: ISO 230-2, figures as fed to the control", "Messgerät: Laser XL-80, Zählrichtung gedreht",
+        "Temperatur: 20,3 °C, Werte noch ohne Ausdehnungskorrektur"}) {
+    EXPECT_THAT(read(std::string(text) + "\n" + kTable),
+                HasSubstr(std::string("note: beside the table: line 1 \"") + text + "\". Does one of these"))
+        << text;
+    const std::string below = read(kTable + "\n" + text + "\n");
+    EXPECT_THAT(below, HasSubstr(std::string("\"") + text + "\". Does one of these")) << text;
+    EXPECT_THAT(below, Not(HasSubstr("is omitted"))) << text;
+  }
+  EXPECT_THAT(
+      read("Lauf 2: zurück, vom anderen Ende her notiert\nX [mm];Lauf 1 + [µm];Lauf 2 - [µm]\n0;1;2\n50;"
+           "3;4\n100;5;6\n"),
+      HasSubstr("vom anderen Ende her notiert"));
+  std::string many;
+  for (int k = 0; k < 20; ++k) many += "# Feld" + std::to_string(k) + "\n";
+  EXPECT_THAT(read("# Das hier ist bitte von hinten zu sehen\n" + many + kTable),
+              AllOf(HasSubstr("line 1 \"Das hier ist bitte von hinten zu sehen\""),
+                    HasSubstr(" and 9 shorter texts")));
+}
+
+TEST(UnusedTexts, OfAProtocolMakeNoClaim) {
   for (const char* text : {"Positioniergenauigkeit X-Achse, Laser XL-80, 20 °C, Bediener Müller",
                            "Positioning accuracy test according to ISO 230-2:2014, bidirectional, 5 runs",
                            "Overrun 5 mm, dwell 2 s",
@@ -90,7 +118,7 @@ TEST(UnusedTexts, OfAProtocolHaveNoNote) {
                            "Die Messung wurde von Herrn Schmidt durchgeführt.",
                            "Messung vorwärts und rückwärts nach ISO 230-2"})
     EXPECT_THAT(read(std::string(text) + "\n" + kTable),
-                AllOf(StartsWith("X[mm],"), Not(HasSubstr("note: "))))
+                AllOf(StartsWith("X[mm],"), Not(HasSubstr("may state")), Not(HasSubstr("names the unit"))))
         << text;
 }
 

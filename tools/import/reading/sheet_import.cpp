@@ -26,6 +26,7 @@
 #include "tools/import/reading/title_positions.h"
 #include "tools/import/reading/unused_texts.h"
 #include "tools/import/reading/verdict_columns.h"
+#include "tools/import/sizes/contradicting_repeats.h"
 #include "tools/import/sizes/deviation_sizes.h"
 #include "tools/import/sizes/mistyped_cells.h"
 #include "tools/import/sizes/odd_runs.h"
@@ -271,6 +272,7 @@ void judge_sizes(SheetReading& reading, const std::vector<std::string>& found) {
   if (!doubts.empty()) return;
   note_outlying_cells(reading.sheet, reading.table, sized);
   note_mistyped_cells(reading.sheet, reading.table, sized);
+  note_contradicting_repeats(reading.sheet, reading.table, sized);
   note_odd_runs(reading.sheet, reading.table, sized);
   note_other_scales(reading.sheet, reading.table, sized);
 }
@@ -390,6 +392,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   take_sentences_below_headings(result.sheet);
   result.table = sheet::parts_of_sheet(result.sheet);
   add_run_lines(result.sheet, result.table, run_lines);
+  note_title_alone(result.sheet, result.table);
   note_foreign_letters(result.sheet, result.table);
   state_degrees(result.table, degrees);
   refuse_transposed(result.sheet, result.table);

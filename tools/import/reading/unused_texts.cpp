@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/words/doubtful_words.h"
 #include "tools/import/words/sheet_words.h"
-#include "tools/import/words/sign_words.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -47,7 +47,6 @@ const char* advice_of(Doubtful subject) {
     case Doubtful::kCodes:
       return "may state the meaning of a code, and it is not used: write + and - (+ is the direction of "
              "increasing positions) into the column of the directions";
-    case Doubtful::kSentence:
     case Doubtful::kSign:
     case Doubtful::kIncrements:
     case Doubtful::kUnits:
@@ -56,27 +55,68 @@ const char* advice_of(Doubtful subject) {
   return "";
 }
 
+constexpr std::string_view kBelow = "is a text below the table and is omitted";
+constexpr std::string_view kTitle = "it is read as a title, and is no heading";
+
 /// True if a note quotes a text. That it is omitted, or read as a title, says nothing about its meaning.
 bool is_used(const sheet::Sheet& sheet, const std::string& text) {
   return std::any_of(sheet.notes.begin(), sheet.notes.end(), [&](const std::string& note) {
-    return note.find(text) != std::string::npos &&
-           !note.ends_with("is a text below the table and is omitted") &&
-           !note.ends_with("it is read as a title, and is no heading");
-  });
-}
-
-/// True for a text with the word of an approach direction.
-bool names_way(const std::string& text) {
-  const std::vector<std::string> words = plain_words(text);
-  return std::any_of(words.begin(), words.end(), [](const std::string& word) {
-    return word.size() > 2 &&
-           (sense_said(word) != 0 || word.starts_with("rückweg") || word.starts_with("hinweg"));
+    return note.find(text) != std::string::npos && !note.ends_with(kBelow) && !note.ends_with(kTitle);
   });
 }
 
 std::string quoted_text(const TableText& text) {
   const std::string at = text.line > 0 ? fmt::format("line {}: ", text.line) : "";
   return fmt::format("{}the text \"{}\"", at, text.quoted());
+}
+
+/// One note with all texts that no other note quotes: no list of words is complete.
+void note_other_texts(sheet::Sheet& sheet, const sheet::SheetTable& table,
+                      const std::vector<TableText>& texts, const std::vector<SheetColumn>& columns) {
+  constexpr std::size_t kShown = 12;    // texts; a protocol has about ten lines
+  constexpr std::size_t kSentence = 3;  // words; "Portal 4" has fewer
+  std::vector<const TableText*> left;
+  for (const TableText& one : texts) {
+    const bool again = std::any_of(left.begin(), left.end(), [&](const TableText* other) {
+      // A line is also one text for each of its cells.
+      return other->quoted() == one.quoted() ||
+             (other->line == one.line && one.line > 0 && other->text.find(one.text) != std::string::npos);
+    });
+    // The labels of a cover sheet ("Maschine"), and an upper line of headings, are no sentences.
+    const bool label = one.line == 0 && plain_words(one.text).size() < kSentence;
+    const bool heading = table.upper_row && one.line == sheet.line[*table.upper_row];
+    const bool refused = std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& column) {
+      return column.sign_text == one.text || column.sign_text == one.quoted();
+    });
+    if (!one.in_row && !label && !heading && !refused && !again && !is_used(sheet, one.text))
+      left.push_back(&one);
+  }
+  std::erase_if(sheet.notes, [&](const std::string& note) {
+    return note.ends_with(kBelow) && std::any_of(texts.begin(), texts.end(), [&](const TableText& one) {
+             return note.find("\"" + one.text + "\"") != std::string::npos;
+           });
+  });  // another note quotes them
+  if (left.empty()) return;
+  std::stable_sort(left.begin(), left.end(),
+                   [](const TableText* a, const TableText* b) { return a->line < b->line; });
+  // A sentence that changes numbers has more words than a line of a protocol.
+  std::vector<const TableText*> shown = left;
+  std::stable_sort(shown.begin(), shown.end(), [](const TableText* a, const TableText* b) {
+    return plain_words(a->text).size() > plain_words(b->text).size();
+  });
+  shown.resize(std::min(kShown, shown.size()));
+  std::string list;
+  for (const TableText* one : left) {
+    if (std::find(shown.begin(), shown.end(), one) == shown.end()) continue;
+    list += list.empty() ? "" : ", ";
+    list += one->line > 0 ? fmt::format("line {} \"{}\"", one->line, text::trimmed(one->text))
+                          : fmt::format("\"{}\"", one->quoted());
+  }
+  if (left.size() > shown.size()) list += fmt::format(" and {} shorter texts", left.size() - shown.size());
+  sheet.notes.push_back(
+      fmt::format("beside the table: {}. Does one of these texts change values, their sign (--sign) or unit, "
+                  "positions, or the order or way of a run? Then change the file accordingly",
+                  list));
 }
 
 }  // namespace
@@ -88,20 +128,10 @@ void note_unused_texts(sheet::Sheet& sheet, const sheet::SheetTable& table,
   });
   std::set<std::pair<std::size_t, Doubtful>> of_line;
   std::set<std::pair<std::string, Doubtful>> noted;
-  std::vector<std::string> notes, sentences;
+  std::vector<std::string> notes;
   for (const TableText& one : texts) {
     if (is_used(sheet, one.text)) continue;
-    std::set<Doubtful> subjects = doubtful_in(one.text);
-    // A cover sheet has many names; a remark in a row is about the row.
-    const bool way = directed && names_way(one.text);  // the headings state the directions
-    const bool sign = sign_said(one.text, SignPlace::kTitle) != SignSaid::kNothing;  // a rule reads it
-    const bool other =
-        !way && !sign &&
-        (subjects.contains(Doubtful::kSentence) || (one.line > 0 && !is_of_a_protocol(one.text)));
-    if (subjects.erase(Doubtful::kSentence);
-        subjects.empty() && other && !one.in_row &&
-        std::find(sentences.begin(), sentences.end(), quoted_text(one)) == sentences.end())
-      sentences.push_back(quoted_text(one));
+    const std::set<Doubtful> subjects = doubtful_in(one.text);
     for (const Doubtful subject : subjects) {
       const std::string advice = advice_of(subject);
       if (advice.empty() || (subject == Doubtful::kDirections && directed) ||
@@ -122,16 +152,8 @@ void note_unused_texts(sheet::Sheet& sheet, const sheet::SheetTable& table,
                     "(deviations: --deviation)",
                     quoted_text(one), word, unit, unit));
   }
-  constexpr std::size_t kShown = 5;  // sentences
-  const std::size_t more = sentences.size() > kShown ? sentences.size() - kShown : 0;
-  sentences.resize(sentences.size() - more);
-  if (!sentences.empty())
-    notes.push_back(
-        fmt::format("{}{}: the import does not understand this and does not use it; if it changes values, "
-                    "their sign (--sign), "
-                    "positions or the way of a run, change the file accordingly",
-                    text::joined(sentences, ", "), more > 0 ? fmt::format(" and {} more texts", more) : ""));
   sheet.notes.insert(sheet.notes.end(), notes.begin(), notes.end());
+  note_other_texts(sheet, table, texts, columns);
 }
 
 std::string advice_for_text(const std::string& text) {

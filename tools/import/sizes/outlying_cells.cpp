@@ -50,34 +50,6 @@ double median_step(const std::vector<double>& values) {
   return maths::median(steps);
 }
 
-/// The readings of one column as deviations in mm or deg, with the rows of the sheet.
-struct ReadingSeries {
-  std::vector<double> value;
-  std::vector<std::size_t> row;
-};
-
-ReadingSeries series_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
-                        const std::vector<SizedColumn>& columns, std::size_t k) {
-  ReadingSeries series;
-  const auto unit = sized_unit(columns[k]);
-  const bool deviation = columns[k].use == SizedColumn::Use::kDeviation;
-  if (!unit || (!deviation && columns[k].measures.empty())) return series;
-  std::optional<std::size_t> target;
-  for (std::size_t i = 0; !deviation && i < columns.size(); ++i)
-    if (columns[i].use == SizedColumn::Use::kPosition && columns[i].name == columns[k].measures &&
-        sized_unit(columns[i]))
-      target = i;
-  if (!deviation && !target) return series;
-  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
-    const auto value = sheet::number_at(sheet, row, k);
-    const auto at = target ? sheet::number_at(sheet, row, *target) : std::nullopt;
-    if (!value || (target && !at)) continue;
-    series.value.push_back(*value * unit->factor - (target ? *at * sized_unit(columns[*target])->factor : 0));
-    series.row.push_back(row);
-  }
-  return series;
-}
-
 struct SizedCell {
   double size = 0;
   std::size_t decimals = 0, line = 0;
@@ -151,7 +123,7 @@ std::vector<OutlyingValue> outlying_values(const std::vector<double>& values) {
 void note_outlying_cells(sheet::Sheet& sheet, const sheet::SheetTable& table,
                          const std::vector<SizedColumn>& columns) {
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    const ReadingSeries series = series_of(sheet, table, columns, k);
+    const DeviationSeries series = deviations_of(sheet, table, columns, k);
     const auto unit = sized_unit(columns[k]);
     for (const OutlyingValue& one : outlying_values(series.value)) {
       const bool angle = unit->dimension == format::Dimension::kAngle;

@@ -210,8 +210,8 @@ constexpr double kLargeShare = 0.005;  // of the motion; stages with a scale are
 
 /// Size of the deviations of a position, mm: the median of the deviations, or the largest difference between
 /// the measured positions and their targets, from their median.
-std::optional<double> deviations_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
-                                    const std::vector<SizedColumn>& columns, std::size_t position) {
+std::optional<double> deviation_size(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                                     const std::vector<SizedColumn>& columns, std::size_t position) {
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const auto unit = sized_unit(columns[k]);
     if (!unit || unit->dimension != format::Dimension::kLength) continue;
@@ -342,7 +342,7 @@ std::vector<SizeDoubt> judge_small_motions(sheet::Sheet& sheet, const sheet::She
         std::minmax_element(values.begin(), values.end(),
                             [](const Printed& one, const Printed& other) { return one.value < other.value; });
     const double motion_mm = (most->value - least->value) * unit->factor;
-    const auto size_mm = deviations_of(sheet, table, columns, k);
+    const auto size_mm = deviation_size(sheet, table, columns, k);
     if (motion_mm >= kSmallMachine_mm || !size_mm) continue;
     const std::string text = fmt::format(
         "the positions go from {:.6g} to {:.6g} {}, so {} would move by {} only, with deviations of {}; if "

@@ -20,4 +20,26 @@ std::string size_text(double size, bool angle) {
                        : fmt::format("{:.3g} mm", size);
 }
 
+DeviationSeries deviations_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                              const std::vector<SizedColumn>& columns, std::size_t k) {
+  DeviationSeries series;
+  const auto unit = sized_unit(columns[k]);
+  const bool deviation = columns[k].use == SizedColumn::Use::kDeviation;
+  if (!unit || (!deviation && columns[k].measures.empty())) return series;
+  std::optional<std::size_t> target;
+  for (std::size_t i = 0; !deviation && i < columns.size(); ++i)
+    if (columns[i].use == SizedColumn::Use::kPosition && columns[i].name == columns[k].measures &&
+        sized_unit(columns[i]))
+      target = i;
+  if (!deviation && !target) return series;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const auto value = sheet::number_at(sheet, row, k);
+    const auto at = target ? sheet::number_at(sheet, row, *target) : std::nullopt;
+    if (!value || (target && !at)) continue;
+    series.value.push_back(*value * unit->factor - (target ? *at * sized_unit(columns[*target])->factor : 0));
+    series.row.push_back(row);
+  }
+  return series;
+}
+
 }  // namespace vernier::importer

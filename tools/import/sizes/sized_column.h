@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/format/units.h"
 #include "tools/sheet/heading.h"
@@ -31,6 +32,18 @@ struct SizeDoubt {
 
 /// Returns the unit of a column of lengths or angles; nullopt for other columns.
 std::optional<format::Unit> sized_unit(const SizedColumn& column);
+
+/// The readings of one column as deviations in mm or deg, with the rows of the sheet.
+struct DeviationSeries {
+  std::vector<double> value;
+  std::vector<std::size_t> row;
+};
+
+/// Returns the deviations of column `k`: its values, or its measured positions without the positions of their
+/// axis. Rows without a number are left out. Empty: the column has no readings.
+DeviationSeries deviations_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                              const std::vector<SizedColumn>& columns, std::size_t k);
+
 /// Returns a size with a unit that suits it. `size`: in mm, or in deg if `angle` is true.
 std::string size_text(double size, bool angle = false);
 

@@ -389,7 +389,11 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
   const Values values = pair.position != pair.reading ? values_beside(sheet, table, pair) : Values::kUnclear;
   switch (values) {
     case Values::kDeviations:
-      return fmt::format("{} (the values are small compared with the positions: deviations)", as_deviation);
+      return fmt::format(
+          "{} (the values are small compared with the positions) if they are deviations, actual - nominal; "
+          "for nominal - actual, such as corrections or remaining distances, add --sign nominal-actual; sum "
+          "changes from row to row in the file first",
+          as_deviation);
     case Values::kPositions:
       return fmt::format("{} (the values follow the positions)", as_position);
     case Values::kOpposite:

@@ -294,7 +294,10 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
                            table.headings[k].text);
   }
   if (without.empty()) return;
-  const bool one = units.size() == 1 && (doubt.empty() || !other_than_deviation);
+  const bool stated = std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& column) {
+    return column.use != SheetColumn::Use::kLeft && !column.unit_from.empty() && !units.contains(column.unit);
+  });  // --unit would take the place of the unit of a title
+  const bool one = units.size() == 1 && !stated && (doubt.empty() || !other_than_deviation);
   std::vector<std::string> names;
   for (const SheetColumn& column : columns)
     if (column.unit.empty()) names.push_back(column.name);

@@ -10,6 +10,7 @@
 
 #include "tools/format/units.h"
 #include "tools/import/words/sheet_words.h"
+#include "tools/sheet/unit_factor.h"
 #include "tools/text/numbers.h"
 #include "tools/text/words.h"
 
@@ -126,8 +127,9 @@ const std::vector<DoubtRule>& rules() {
        "unten~nach~oben|von~unten|bottom~to~top|bottom~up|upwards|last~first|letzte~zuerst|umgekehrter~"
        "reihen|reverse~order|reversed~order|rückwärts~zu~lesen|read~backward|read~upward|absteigend|"
        "descending|reihenfolge~der~messung|kopfüber|last~target~first|oberste|unterste|topmost|uppermost|"
-       "lowermost|=bottom "
-       "*spalte|column|wert|*werte|value|rück|zurück|return|back|lesen|gelesen|read|liste|listed",
+       "lowermost|=bottom|fernen~ende|far~end|anderen~ende|other~end|zuletzt~zuerst "
+       "*spalte|column|wert|*werte|value|rück|zurück|return|back|lesen|gelesen|read|liste|listed|beginn|"
+       "begin|start|=lauf|=run|zeilen|rows|lines",
        "angefahren|approach"},
       {D::kDirections,
        "gegenrichtung|gegengericht|richtung~gewechs|richtung~wechs|richtungswechsel|wechselnd|alterniert|"
@@ -158,26 +160,7 @@ const std::vector<DoubtRule>& rules() {
       {D::kDirections,
        "high~to~low|low~to~high|von~groß~nach~klein|from~large~to|from~the~far|vom~ende|zum~anfang "
        "lauf|läufe|=run|=runs|spalte|column|=reihe|=pass",
-       ""},
-      // The net below all rules: a sentence with a verb, about the readings. A line of a protocol
-      // ("Bediener: Müller") has no verb.
-      {D::kSentence,
-       "=is|=are|=was|=were|=be|=been|=has|=have|=had|goes|=go|stands|starts|begins|counts|carry|carries|"
-       "belong|=must|should|=do|=does|=did|=ist|=sind|=war|=waren|wurde|wird|werden|=hat|haben|hatte|zählt|"
-       "zählen|=gilt|gelten|beginn|entstand|entspr|=steht|stehen|muss|müssen|=soll|sollen|gehör|enthält|"
-       "enthalten|contain|=refers|=needs|=need|bitte|=please|means|heißt|bedeut|=stieß|=kommt|=kam|came|="
-       "trägt|"
-       "tragen|läuft|liegt|liegen|=lies|=lag|=lagen "
-       "wert|*werte|value|entry|entries|eintr|figure|=numbers|zahl|reading|ablesung|=lauf|läufe|*läufe|=run|"
-       "=runs|=pass|=passes|durchgang|durchgänge|column|spalte|=row|=rows|zeile|=reihe|=reihen|messreihe|"
-       "series|liste|=list|=data|daten|=laser|*uhr|gauge|=dial|coordinate|koordinate|length|längen|error|"
-       "fehler|*fehler|deviat|abweich|*abweichung|anzeige|display|amount|betrag|beträge|machine|maschine|"
-       "tisch|schlitten|slide|carriage|punkt|=point|=points|sample|probe",
-       "kalibr|calibr|durchgeführt|carried~out|performed|bediener|operator|warmgel|warmed|export|erstellt|"
-       "created|generated|gespeichert|saved|ausgewertet|evaluated|=iso|vdi|geprüft|checked|umdrehung|=turn|"
-       "generated|approved|"
-       "gereinigt|justier|adjusted|aligned|halle|=hall|raum|=room|standort|"
-       "cleaned|=#unit"}};
+       ""}};
   return kRules;
 }
 
@@ -276,8 +259,6 @@ std::set<std::string> marks_of(const std::vector<std::string>& words) {
     };
     const auto number = text::parse_number(words[k]);
     if (is_ratio(words[k])) marks.insert("#ratio");
-    if (unit_words().contains(words[k]) && (k == 0 || !text::parse_number(words[k - 1])))
-      marks.insert("#unit");
     if (number && *number != 0 && kLengths.contains(next(1))) marks.insert("#length");
     if (is_run_number(words[k])) marks.insert("#integer");
     const auto value = [](const std::string& word) {
@@ -343,90 +324,51 @@ std::set<Doubtful> doubtful_in(std::string_view text) {
   return found;
 }
 
+bool may_state(std::string_view text, Doubtful subject) { return doubtful_in(text).contains(subject); }
+
 namespace {
 
-/// is_of_a_protocol() of a part of a text without punctuation.
-bool clause_of_a_protocol(std::string_view text) {
-  static const std::string kOfProtocol =
-      "geprüft|checked|bearbeitungs|baujahr|quick|xcal|qc20|sample|averag|refraction|=air|start|umrichter|*"
-      "geber|*maßstab|"
-      "*messsystem|luft|druck|freigabe|=dmg|=mori|strahlteiler|nist|"
-      "*genauigkeit|accuracy|positionier|positioning|*protokoll|*bericht|report|*test|prüf|messung|"
-      "measure|*messung|gemessen|*laser|interferomet|*maschine|machine|seriennummer|serial|=nr|=no|=sn|"
-      "bediener|operator|datum|date|uhrzeit|=time|=iso|vdi|dgq|=din|norm|*temperatur|temperature|°c|"
-      "luftdruck|pressure|feucht|humidity|anzahl|number~of|bidirekt|unidirekt|feed|vorschub|speed|"
-      "dwell|verweil|overrun|überlauf|unsicherheit|*unsicherheit|uncertainty|coverage|erweiterungs|"
-      "kompens|compens|korrektur|correction|ausdehnung|expansion|material|kalibr|calibr|renishaw|"
-      "heidenhain|siemens|sinumerik|fanuc|agilent|keysight|leica|mahr|mitutoyo|xl|ml10|offset|messweg|"
-      "schrittweite|interval|wiederhol|repeat|umkehr|reversal|auflösung|resolution|range|*achse|axis|"
-      "=axes|halle|projekt|project|kunde|customer|auftrag|order|verwendung|warm|deviation|*abweichung|"
-      "error|target|soll|=ist|position|umgebung|ambient|encoder|geber|messsystem|spindle|gewinde|"
-      "übersetz|aufstellung|gültig|valid|keine|=none|nullpunkt|=genullt|referenz|reference|mitte|"
-      "toleranz|tolerance|sensor|bemerk|remark|hinweis|kreisform|circular|radius|ballbar|seite|=page|"
-      "auswertung|evaluat|gerundet|average|mittel|control|software|version|werkzeug|tool|reflektor|"
-      "reflector|tracker|=bed|nozzle|gmbh|=inc|=ltd|=ag|firma|company|abteilung|labor|serie|typ|type|"
-      "modell|model|export|kanal|channel|profil|profile|tabelle|table|liste|punkt|point|anlage|"
-      "standort|raum|room|geradheit|straight|winkel|rotat|nick|gier|pitch|yaw|drehtisch|robot|mesh|=x|"
-      "=y|=z|=a|=b|=c|ergebnis|result|beispiel|example|daten|data|einheit|unit|printer|drucker|klipper|"
-      "kinematic|transform|fräs|mill|dreh|lathe|survey|aufnahme|*spindel|approach|direction|carried|"
-      "durchgeführt|performed|maintenance|wartung|rückfrag|kontakt|contact|*labor";
-  static const std::set<std::string> kEmpty = {
-      "der",  "die", "das",       "und", "des",   "dem",   "den", "mit",   "bei", "von",  "nach", "vor",
-      "für",  "the", "and",       "for", "with",  "from",  "auf", "bis",   "zur", "zum",  "aus",  "ein",
-      "eine", "min", "according", "per", "above", "below", "not", "nicht", "nur", "alle", "all"};
-  const std::vector<std::string> words = words_of_doubt(text);
-  constexpr std::size_t kWordsForEach = 4;  // of a sentence, for each word of a protocol
-  constexpr std::size_t kWithUnit = 4;      // words: "all values are given in µm"
-  const bool unit = marks_of(words).contains("#unit");
-  std::size_t known = unit ? 1 : 0;
-  std::set<std::string> others;
-  for (const std::string& word : words) {
-    const bool letters =
-        word.size() > 2 && std::none_of(word.begin(), word.end(), is_digit) && !kEmpty.contains(word);
-    if (has_one_of({word}, {}, kOfProtocol))
-      ++known;
-    else if (letters)
-      others.insert(word);
-  }
-  return others.size() + known < 2 || (unit && others.size() <= kWithUnit) ||
-         kWordsForEach * known >= others.size() + known;
+/// The unit that word `k` names, alone or as a part of the unit behind it ("Zehntel Mikrometer"), with its
+/// words; empty: none.
+std::pair<std::string, std::string> unit_at(const std::vector<std::string>& words, std::size_t k) {
+  constexpr std::size_t kFurthest = 3;  // words: "tenths of a micron"
+  const auto& units = unit_words();
+  std::string text = words[k];
+  if (const auto factor = sheet::factor_at_end(words[k]); factor && factor->value > 0)
+    for (std::size_t next = k + 1; next < words.size() && next <= k + kFurthest; ++next) {
+      text += " " + words[next];
+      const auto whole = units.find(words[next]);
+      if (whole == units.end()) continue;
+      const auto part = sheet::unit_times(factor->value, whole->second);
+      return part ? std::pair(text, *part) : std::pair<std::string, std::string>();
+    }
+  const auto found = units.find(words[k]);
+  return found != units.end() ? std::pair(found->first, found->second)
+                              : std::pair<std::string, std::string>();
 }
 
 }  // namespace
-
-bool is_of_a_protocol(std::string_view text) {
-  // "Laser XL-80, the direction is turned round": what stands behind a comma is another matter.
-  for (std::size_t from = 0; from < text.size();) {
-    const std::size_t end = std::min(text.find_first_of(",;()", from), text.size());
-    if (!clause_of_a_protocol(text.substr(from, end - from))) return false;
-    from = end + 1;
-  }
-  return true;
-}
-
-bool may_state(std::string_view text, Doubtful subject) { return doubtful_in(text).contains(subject); }
 
 std::pair<std::string, std::string> unit_against_headings(std::string_view text,
                                                           const sheet::SheetTable& table) {
   static const std::string kOther =
       "auflösung|resolution|toleranz|tolerance|vorschub|feed|speed|geschwind|wellenlänge|wavelength|unsicher|"
       "uncertain|teilung|raster|gewinde|thread|schraube|screw|messbereich|range|ziffernschritt";
-  const auto& units = unit_words();
   const std::vector<std::string> words = words_of_doubt(text);
   if (has_one_of(words, {}, kOther)) return {};
   for (std::size_t k = 0; k < words.size(); ++k) {
-    const auto found = units.find(words[k]);
-    if (found == units.end() || (k > 0 && text::parse_number(words[k - 1]))) continue;
-    const auto unit = format::find_unit(found->second);
+    const auto [name, symbol] = unit_at(words, k);
+    if (symbol.empty() || (k > 0 && text::parse_number(words[k - 1]))) continue;
+    const auto unit = format::find_unit(symbol);
     if (!unit) continue;
     bool quantity = false, same = false;
     for (const sheet::Heading& heading : table.headings) {
       const auto of_column = heading.unit.empty() ? std::nullopt : format::find_unit(heading.unit);
       quantity |= of_column && of_column->dimension == unit->dimension;
       same |= of_column && of_column->dimension == unit->dimension && of_column->factor == unit->factor &&
-              (unit->dimension != format::Dimension::kTemperature || heading.unit == found->second);
+              (unit->dimension != format::Dimension::kTemperature || heading.unit == symbol);
     }
-    if (quantity && !same) return {words[k], found->second};
+    if (quantity && !same) return {name, symbol};
   }
   return {};
 }

@@ -22,17 +22,12 @@ enum class Doubtful {
   kBackOrder,   // "von unten nach oben lesen"
   kUnits,       // "Positionen in Zoll"
   kDirections,  // "columns 1 to 3 approached from below"
-  kCodes,       // "1 = rückwärts"
-  kSentence     // another sentence about the readings, with a verb: "run 2 was measured on the way home"
+  kCodes        // "1 = rückwärts"
 };
 
 /// Returns what a text may change, by its words (German and English). A text of a protocol without such a
 /// meaning ("Positioniergenauigkeit X-Achse, Laser XL-80, 20 °C") has none.
 std::set<Doubtful> doubtful_in(std::string_view text);
-
-/// True if enough words of a text are those of a protocol: names, instruments, conditions, dates. A text of
-/// one word is one too.
-bool is_of_a_protocol(std::string_view text);
 
 /// True if a text may change this.
 bool may_state(std::string_view text, Doubtful subject);

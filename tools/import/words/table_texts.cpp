@@ -112,4 +112,14 @@ void take_sentences_below_headings(sheet::Sheet& sheet) {
   }
 }
 
+void note_title_alone(sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  if (table.has_headings || table.first_data == 0) return;
+  const std::string title = only_cell(sheet.rows[table.first_data - 1]);
+  if (title.empty()) return;
+  sheet.notes.push_back(
+      fmt::format("line {}: \"{}\" is one text above {} columns: it is read as a title, and the columns have "
+                  "no headings (1, 2, ...); if they are headings, separate them as the rows are separated",
+                  sheet.line[table.first_data - 1], title, table.headings.size()));
+}
+
 }  // namespace vernier::importer

@@ -34,4 +34,7 @@ std::vector<TableText> sentences_about(const sheet::Sheet& sheet, const sheet::S
 /// a note.
 void take_sentences_below_headings(sheet::Sheet& sheet);
 
+/// Notes that the table has no headings, because the line above its rows is one text.
+void note_title_alone(sheet::Sheet& sheet, const sheet::SheetTable& table);
+
 }  // namespace vernier::importer
