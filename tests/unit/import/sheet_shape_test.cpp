@@ -341,6 +341,16 @@ TEST(SheetRemedy, OneTextAboveSeveralColumnsIsNoHeading) {
                     HasSubstr("is one text above 2 columns")));
 }
 
+TEST(SheetRemedy, AColumnWithoutAHeadingIsNoInputWithoutAWord) {
+  SheetWords words;
+  words.columns = {"X[mm]=1"};
+  words.deviations = {"X[um]=2"};
+  const std::string table = "0;0,4;0,9\n60;2,1;2,6\n120;-1,3;-0,7\n180;3,8;3,1\n";
+  EXPECT_THAT(read(table, words), HasSubstr("column 3 has no heading and is read as an input"));
+  words.left = {"3"};
+  EXPECT_THAT(read(table, words), Not(HasSubstr("has no heading")));
+}
+
 TEST(SheetRemedy, AUnitForAllIsNotNamedBesideAnotherUnit) {
   EXPECT_THAT(read("everything metric, errors in microns\nX target;Deviation X\n0;0.4\n60;2.1\n120;-1.3\n"),
               AllOf(HasSubstr("no unit: give it for each, such as --column \"X[mm]=X target\""),

@@ -180,6 +180,18 @@ void note_sparse_columns(SheetReading& reading) {
   }
 }
 
+/// Notes columns of numbers without a heading that no option names: they are inputs, and may be a second run.
+void note_unnamed_columns(SheetReading& reading) {
+  for (std::size_t k = 0; k < reading.columns.size(); ++k)
+    if (const SheetColumn& column = reading.columns[k];
+        column.use == SheetColumn::Use::kColumn && column.why == "by its heading" &&
+        reading.table.headings[k].text == std::to_string(k + 1) && column.name.starts_with("column_"))
+      reading.sheet.notes.push_back(fmt::format(
+          "column {0} has no heading and is read as an input of the machine ({1}), such as a temperature: if "
+          "it has readings, write its heading; --leave {0} leaves it out",
+          k + 1, column.name));
+}
+
 /// Notes deviations beside a rotary axis that moves: sensors on the rotating part measure in their own frame,
 /// and then a deviation is not along the axis that its heading names.
 void note_rotating_frame(SheetReading& reading) {
@@ -467,6 +479,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   note_units(result);
   note_signs(result);
   if (!unfolded_axes) note_sparse_columns(result);  // the rows of the other axes have no reading
+  note_unnamed_columns(result);
   note_rotating_frame(result);
   judge_other_quantities(result.sheet, result.table, result.columns);
   judge_sizes(result, words.found);
