@@ -672,7 +672,11 @@ bool Finder::predicts_worse(std::size_t alternative, std::size_t item,
   add_divisions(alternative, divisions);
   std::vector<std::size_t> set = without(item);
   set.push_back(alternative);
-  const double limit = 2 * evidence_.thresholds().proof.evidence * variance_of_reading();
+  // The worst of several divisions, which share readings and leave out whole stretches, is often beyond the
+  // evidence that one of them would need.
+  const double limit =
+      2 * (evidence_.thresholds().proof.contradiction + std::log(static_cast<double>(divisions.size()))) *
+      variance_of_reading();
   return std::any_of(divisions.begin(), divisions.end(), [&](const Division& one) {
     return held_out_square(set, one.blocks) - one.accepted > limit;
   });

@@ -12,6 +12,7 @@
 #include "tools/diagnose/day.h"
 #include "tools/diagnose/doubts/between_runs.h"
 #include "tools/diagnose/doubts/course.h"
+#include "tools/diagnose/doubts/of_a_file.h"
 #include "tools/diagnose/doubts/shape.h"
 #include "tools/diagnose/outliers.h"
 #include "tools/diagnose/pieces.h"
@@ -385,19 +386,29 @@ class Decision {
                                                            {accepted_.begin() + 1, accepted_.end()},
                                                            found_.options.thresholds.acceptance.distance);
     const bool or_run = !or_set_up && !or_day && change_between_runs(0);
-    if (others == 0 && !or_set_up && !or_day && !or_run) return {};
+    const std::string drifting =
+        or_set_up || or_day || or_run
+            ? std::string()
+            : file_whose_drift_explains(finder_.evidence(), pool_, accepted_.front(),
+                                        {accepted_.begin() + 1, accepted_.end()},
+                                        found_.options.thresholds.acceptance.distance);
+    const bool or_file = !drifting.empty();
+    if (others == 0 && !or_set_up && !or_day && !or_run && !or_file) return {};
     if (or_set_up || or_run) answer_.instrument = "set-up";
-    if (or_day) answer_.instrument = "drift";
+    if (or_day || or_file) answer_.instrument = "drift";
     return fmt::format(
                "{} causes explain these data equally well; the most likely cause is {}.{}{}",
-               1 + others + (or_set_up || or_day || or_run ? 1 : 0),
+               1 + others + (or_set_up || or_day || or_run || or_file ? 1 : 0),
                pool_.candidate(accepted_.front()).spoken,
                or_set_up ? " An instrument that was set up anew between the runs is a further possible cause."
                : or_run
                    ? " A change of the machine or of its set-up between the runs, such as a collision, is a "
                      "further possible cause."
                    : "",
-               or_day ? " An instrument that drifts with the time of day is a further possible cause." : "") +
+               or_day    ? " An instrument that drifts with the time of day is a further possible cause."
+               : or_file ? fmt::format(" A drift of the instrument of {} alone is a further possible cause.",
+                                       drifting)
+                         : "") +
            rest();
   }
 
@@ -667,12 +678,11 @@ class Decision {
     if (!fit::has_uncertainty(found_.measurement)) return !structured || stands_without_u();
     // Noise above the stated value is accepted only if no tested candidate is significant, and if
     // there are enough readings to show structure.
-    const double stated = answer_.end.chi_square / freedom;
-    if (is_beyond_u()) return false;
-    if (noise.independent() && stated > limits_.doubtful_uncertainty) {
-      if (stated > limits_.implausible_uncertainty || something_stands_out()) return false;
+    const double own = noise.independent() ? answer_.end.chi_square / freedom : noise.own * noise.own;
+    if (own > limits_.doubtful_uncertainty) {
+      if (own > limits_.implausible_uncertainty || something_stands_out()) return false;
       // With too few readings to show structure, the requirement is the same as without u.
-      if (freedom < limits_.enough_readings) return !structured && stands_without_u();
+      if (noise.independent() && freedom < limits_.enough_readings) return !structured && stands_without_u();
     }
     const double sigmas = (reduced - 1) / std::sqrt(2 / freedom);
     if (structured) return false;

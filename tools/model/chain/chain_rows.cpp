@@ -13,16 +13,24 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-Matrix3d turn(double angle_deg, const Vector3d& axis) {
-  if (angle_deg == 0) return Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle_deg * maths::kRadPerDeg, axis).toRotationMatrix();
-}
+/// Sine and cosine of an angle in degrees. Most angles of most machines are exactly zero.
+struct TurnValues {
+  explicit TurnValues(double angle_deg) {
+    if (angle_deg == 0) return;
+    s = std::sin(angle_deg * maths::kRadPerDeg);
+    c = std::cos(angle_deg * maths::kRadPerDeg);
+  }
+  double s = 0, c = 1;
+};
 
+/// Rz(theta)*T(0,0,d)*T(a,0,0)*Rx(alpha).
 Frame dh_frame(double theta_deg, double d, double a, double alpha_deg) {
+  const TurnValues z(theta_deg), x(alpha_deg);
   Frame frame;
-  const Matrix3d rz = turn(theta_deg, Vector3d::UnitZ());
-  frame.rotation = rz * turn(alpha_deg, Vector3d::UnitX());
-  frame.origin = d * Vector3d::UnitZ() + a * rz.col(0);
+  frame.rotation << z.c, -z.s * x.c, z.s * x.s,  //
+      z.s, z.c * x.c, -z.c * x.s,                //
+      0, x.s, x.c;
+  frame.origin = Vector3d(a * z.c, a * z.s, d);
   return frame;
 }
 
@@ -36,16 +44,6 @@ Twist turn_about(const Vector3d& axis, const Vector3d& through, const Vector3d& 
 }
 
 }  // namespace
-
-/// Sine and cosine of an angle in degrees. Most angles of most machines are exactly zero.
-struct TurnValues {
-  explicit TurnValues(double angle_deg) {
-    if (angle_deg == 0) return;
-    s = std::sin(angle_deg * maths::kRadPerDeg);
-    c = std::cos(angle_deg * maths::kRadPerDeg);
-  }
-  double s = 0, c = 1;
-};
 
 Frame sixdof_frame(const std::array<double, 6>& v) {
   const TurnValues x(v[3]), y(v[4]), z(v[5]);
@@ -145,7 +143,8 @@ void ChainRows::add_twists(const Link& link, std::size_t i, const Frame& below, 
   if (link.kind == TransformKind::kSixDof) {
     by_dof = sixdof_twists({v(0), v(1), v(2), v(3), v(4), v(5)}, point);
   } else {
-    const Vector3d x = turn(v(0), Vector3d::UnitZ()).col(0);
+    const TurnValues z(v(0));
+    const Vector3d x(z.c, z.s, 0);
     by_dof[0] = turn_about(Vector3d::UnitZ(), Vector3d::Zero(), point);
     by_dof[1] = shift_along(Vector3d::UnitZ());
     by_dof[2] = shift_along(x);
