@@ -50,7 +50,8 @@ class Families {
   std::size_t assigned_ = 0;  // number of candidates that belong to a family
   std::map<std::string, std::map<std::vector<std::vector<double>>, std::size_t>> known_;  // by terms and grid
   std::vector<Family> families_;
-  std::atomic<Eigen::Index> room_ = 64'000'000;  // numbers that may still be stored: 512 MB, for 10 000 poses of a robot
+  std::atomic<Eigen::Index> room_ =
+      64'000'000;  // numbers that may still be stored: 512 MB, for 10 000 poses of a robot
 };
 
 /// Returns every combination of the values of several lists.
