@@ -124,6 +124,16 @@ TEST_F(ImportRemedies, OfARobotWithoutUnitsAreOneCall) {
     }
 }
 
+TEST_F(ImportRemedies, TheUnitOfThePointBesideJointsWithUnitsIsTaken) {
+  text::write_file(folder + "/arm.xml", kArm);
+  text::write_file(folder + "/log.csv", "A1 [deg],A2 [deg],x,y,z\n10,20,1,2,3\n11,21,3,4,5\n12,25,5,6,7\n");
+  ASSERT_EQ(run("vernier import table log.csv --machine arm.xml -o read.csv"), 1) << said;
+  ASSERT_EQ(run(remedy()), 0) << said;
+  const std::string read = text::read_file(folder + "/read.csv");
+  ASSERT_EQ(run("vernier import table log.csv --machine arm.xml --unit mm -o read.csv"), 0) << said;
+  EXPECT_EQ(text::read_file(folder + "/read.csv"), read);
+}
+
 TEST_F(ImportRemedies, JointsWithTheNumbersAndUnitsOfTheAxesAreRead) {
   text::write_file(folder + "/arm.xml", kArm);
   text::write_file(folder + "/log.csv", "A1 [deg],A2 [deg],x [mm],y [mm]\n10,20,1,2\n11,21,3,4\n12,25,5,6\n");
@@ -143,6 +153,190 @@ std::string poses_of_arm(const std::string& unit, double factor) {
                        300 * std::sin(a * rad) + 200 * std::sin((a + b) * rad));
   }
   return csv;
+}
+
+/// The joints of the same poses as a controller logs them, and the points as a tracker lists them.
+struct LogAndList {
+  std::string log, list;
+};
+
+LogAndList log_and_list(const std::string& head, double factor) {
+  LogAndList made{head + "\n", ""};
+  for (int i = 0; i < 20; ++i) {
+    const double a = (i * 67 % 290) - 145.13, b = (i * 41 % 250) - 125.21, rad = std::numbers::pi / 180;
+    const double x = 300 * std::cos(a * rad) + 200 * std::cos((a + b) * rad),
+                 y = 300 * std::sin(a * rad) + 200 * std::sin((a + b) * rad);
+    made.log += fmt::format("P{};{:.5f};{:.5f};{:.3f};{:.3f};0.000\n", i + 1, factor * a, factor * b, x, y);
+    // Another frame, and deviations of a robot.
+    made.list += fmt::format("{:.4f}\t{:.4f}\t{:.4f}\n", 900 - y + 0.3 * std::sin(7 * i), 400 + x,
+                             50 + 0.3 * std::cos(5 * i));
+  }
+  return made;
+}
+
+/// A robot whose joints have names of their own.
+std::string own_names() {
+  std::string arm = kArm;
+  for (const auto& [name, own] : {std::pair("J1", "turret"), std::pair("J2", "elbow")})
+    for (std::size_t at = 0; (at = arm.find(name, at)) != std::string::npos;) arm.replace(at, 2, own);
+  return arm;
+}
+
+TEST_F(ImportRemedies, OfAListOfPositionsIsOneCallForBothFiles) {
+  text::write_file(folder + "/own.xml", own_names());
+  const auto [log, list] = log_and_list("Name;A1;A2;X;Y;Z", 1);
+  text::write_file(folder + "/log.csv", log);
+  text::write_file(folder + "/list.txt", list);
+  const std::string call = "vernier import tracker list.txt --nominal log.csv --machine own.xml -o read.csv ";
+  ASSERT_EQ(run(call), 1) << said;
+  EXPECT_THAT(said,
+              HasSubstr("--column \"1=x[mm]\" --column \"2=y[mm]\" --column \"3=z[mm]\" --nominal-column "
+                        "\"turret[deg]=A1\" --nominal-column \"elbow[deg]=A2\" -o read.csv"));
+  ASSERT_EQ(run(remedy()), 0) << said;
+  const std::string read = text::read_file(folder + "/read.csv");
+  EXPECT_THAT(read, testing::StartsWith("turret[deg],elbow[deg],x[mm],y[mm],z[mm]\n-145.13000,"));
+  // With the columns of the points, all axes are named together.
+  ASSERT_EQ(run(call + "--column 1=x[mm] --column 2=y[mm] --column 3=z[mm]"), 1) << said;
+  EXPECT_THAT(said, HasSubstr("log.csv:1: \"turret, elbow\": the list of nominal positions has no column"));
+  EXPECT_THAT(said, HasSubstr("the joints are in [deg]"));
+  ASSERT_EQ(run(remedy()), 0) << said;
+  EXPECT_EQ(text::read_file(folder + "/read.csv"), read);
+  // One of the columns is assigned: the call has the others too.
+  ASSERT_EQ(run(call + "--column 1=x[mm] --column 2=y[mm] --column 3=z[mm] --nominal-column elbow[deg]=A2"),
+            1);
+  EXPECT_THAT(said, HasSubstr("\"turret\": the list of nominal positions"));
+  EXPECT_THAT(said, HasSubstr("--nominal-column \"elbow[deg]=A2\""));
+  ASSERT_EQ(run(remedy()), 0) << said;
+  EXPECT_EQ(text::read_file(folder + "/read.csv"), read);
+  // Names that say nothing beside other numbers: the user states the headings.
+  text::write_file(folder + "/log.csv", log_and_list("Name;one;two;X;Y;Z", 1).log);
+  ASSERT_EQ(run(call + "--column 1=x[mm] --column 2=y[mm] --column 3=z[mm]"), 1) << said;
+  EXPECT_THAT(said, HasSubstr("a heading of the list in the place of HEADING (Name, one, two, X, Y, Z)"));
+  std::string stated = remedy();
+  for (const char* const heading : {"one", "two"})
+    stated.replace(stated.find("HEADING"), std::string("HEADING").size(), heading);
+  ASSERT_EQ(run(stated), 0) << said;
+  EXPECT_EQ(text::read_file(folder + "/read.csv"), read);
+}
+
+TEST_F(ImportRemedies, OfJointsInRadiansNameTheUnit) {
+  for (const bool own : {false, true}) {
+    text::write_file(folder + "/arm.xml", own ? own_names() : std::string(kArm));
+    const std::string first = own ? "turret" : "J1", second = own ? "elbow" : "J2";
+    const auto [log, list] = log_and_list("Name;A1;A2;X;Y;Z", std::numbers::pi / 180);
+    text::write_file(folder + "/log.csv", log);
+    text::write_file(folder + "/list.txt", list);
+    const std::string call =
+        "vernier import tracker list.txt --column 1=x[mm] --column 2=y[mm] --column 3=z[mm] --nominal "
+        "log.csv "
+        "--machine arm.xml -o read.csv";
+    ASSERT_EQ(run(call), 1) << said;
+    EXPECT_THAT(said, HasSubstr("the joints are in [rad]"));
+    ASSERT_EQ(run(remedy()), 0) << said;
+    const std::string read = text::read_file(folder + "/read.csv");
+    EXPECT_THAT(read, testing::StartsWith(first + "[rad]," + second + "[rad],x[mm]"));
+    // The user states the wrong unit: the points show it.
+    ASSERT_EQ(
+        run(call + fmt::format(" --nominal-column {}[deg]=A1 --nominal-column {}[deg]=A2", first, second)),
+        1);
+    EXPECT_THAT(said, HasSubstr("In radians the points agree within "));
+    EXPECT_THAT(said, HasSubstr("write [rad], give: "));
+    EXPECT_THAT(said, testing::Not(HasSubstr("--tolerance")));
+    ASSERT_EQ(run(remedy()), 0) << said;
+    EXPECT_EQ(text::read_file(folder + "/read.csv"), read);
+    // The same in the headings of the list.
+    text::write_file(folder + "/log.csv",
+                     log_and_list("Name;A1 [deg];A2 [deg];X;Y;Z", std::numbers::pi / 180).log);
+    ASSERT_EQ(run(call + (own ? " --nominal-column turret=2 --nominal-column elbow[deg]=3" : "")), 1) << said;
+    EXPECT_THAT(said,
+                HasSubstr("write [rad] in the place of [deg] in the headings of log.csv (A1 [deg], A2"));
+    text::write_file(folder + "/log.csv",
+                     log_and_list("Name;A1 [rad];A2 [rad];X;Y;Z", std::numbers::pi / 180).log);
+    ASSERT_EQ(run(call + (own ? " --nominal-column turret=2 --nominal-column elbow=3" : "")), 0) << said;
+  }
+}
+
+TEST_F(ImportRemedies, OfALogNameThePositionThatTheControlComputed) {
+  text::write_file(folder + "/own.xml", own_names());
+  text::write_file(folder + "/log.csv", log_and_list("Name;A1;A2;X;Y;Z", 1).log);
+  text::write_file(folder + "/list.txt", log_and_list("", 1).list);
+  const std::string call = "vernier import table log.csv --machine own.xml -o read.csv";
+  ASSERT_EQ(run(call), 1) << said;
+  EXPECT_THAT(said, HasSubstr("the control probably computed it from the joints, and it is no measurement"));
+  // The call for the points of another file.
+  const std::size_t at = said.find("vernier import tracker POINTS"),
+                    end = said.find("; if an instrument", at);
+  ASSERT_NE(at, std::string::npos) << said;
+  std::string tracker = said.substr(at, end - at);
+  tracker.replace(tracker.find("POINTS"), 6, "list.txt --column 1=x[mm] --column 2=y[mm] --column 3=z[mm]");
+  const std::string table = remedy();
+  ASSERT_EQ(run(tracker), 0) << said;
+  ASSERT_EQ(run(table), 0) << said;
+  EXPECT_THAT(text::read_file(folder + "/read.csv"),
+              testing::StartsWith("Name,turret[deg],elbow[deg],x[mm],y[mm],z[mm]\n"));
+  // The joints have their names and units: only the point is open.
+  text::write_file(folder + "/log.csv", log_and_list("Name;turret [deg];elbow [deg];X;Y;Z", 1).log);
+  ASSERT_EQ(run(call), 1) << said;
+  EXPECT_THAT(remedy(),
+              HasSubstr("own.xml --column \"x[mm]=X\" --column \"y[mm]=Y\" --column \"z[mm]=Z\" -o"));
+  ASSERT_EQ(run(remedy()), 0) << said;
+  // A point that differs from the nominal machine can be measured.
+  std::string measured = log_and_list("Name;turret [deg];elbow [deg];X;Y;Z", 1).log;
+  for (std::size_t row = 0, place = 0; (place = measured.find(";0.000\n", place)) != std::string::npos; ++row)
+    measured.replace(place, 6, fmt::format(";{:.3f}", 0.4 * std::sin(5.0 * static_cast<double>(row))));
+  text::write_file(folder + "/log.csv", measured);
+  ASSERT_EQ(run(call), 1) << said;
+  EXPECT_THAT(said, testing::Not(HasSubstr("the control probably computed it")));
+  // Joints alone are a list of positions.
+  text::write_file(folder + "/log.csv", "Name;A1;A2\nP1;10;20\nP2;30;45\nP3;11;9\n");
+  ASSERT_EQ(run(call), 1) << said;
+  EXPECT_THAT(said, HasSubstr("the table has the positions of the axes and no reading"));
+  EXPECT_THAT(remedy(), HasSubstr("vernier import tracker POINTS --nominal log.csv"));
+}
+
+TEST_F(ImportRemedies, OfAPartOfThePointsIsTheWholePoint) {
+  text::write_file(folder + "/own.xml", own_names());
+  const auto [log, list] = log_and_list("Name;turret [deg];elbow [deg];X;Y;Z", 1);
+  text::write_file(folder + "/log.csv", log);
+  text::write_file(folder + "/list.txt", list);
+  const std::string call = "vernier import tracker list.txt --nominal log.csv --machine own.xml -o read.csv";
+  ASSERT_EQ(run(call + " --column 3=x[mm]"), 1) << said;
+  EXPECT_THAT(said,
+              HasSubstr("list.txt: \"y, z\": the list has columns of numbers that are not read (column 1, "
+                        "2), and no column is y, z"));
+  EXPECT_FALSE(fs::exists(folder + "/read.csv"));
+  const std::size_t first = said.find("vernier import"), end = said.find("; if the instrument", first);
+  ASSERT_NE(end, std::string::npos) << said;
+  const std::string whole = said.substr(first, end - first), part = remedy();
+  ASSERT_EQ(run(whole), 0) << said;
+  EXPECT_THAT(text::read_file(folder + "/read.csv"),
+              testing::StartsWith("turret[deg],elbow[deg],x[mm],y[mm],z[mm]\n"));
+  ASSERT_EQ(run(part), 0) << said;
+  EXPECT_THAT(text::read_file(folder + "/read.csv"),
+              testing::StartsWith("turret[deg],elbow[deg],x[mm],unused_1"));
+  // Columns with the names that a page gives them have no meaning either.
+  EXPECT_EQ(run(call + " --column 3=z[mm] --column 1=column_1 --column 2=column_2"), 1) << said;
+  // Nothing is forgotten beside the positions of an axis.
+  text::write_file(folder + "/z.txt", "0 1.5 20.1 7.5\n100 2.5 20.2 7.7\n200 3.5 20.3 7.1\n");
+  EXPECT_EQ(run("vernier import tracker z.txt --column 1=X[mm] --column 2=x[mm] -o z.csv"), 0) << said;
+}
+
+TEST_F(ImportRemedies, BesideAnAxisWithANameOfItsOwnAreAccepted) {
+  text::write_file(folder + "/slide.xml",
+                   R"xml(<machine name="s"><variables><static><k value="0" nominal="0"/></static>
+  <machineaxes><slide rotary="false" min="0" max="600"/></machineaxes></variables>
+  <transforms><sixdof n="1" X="slide" Y="k*slide"/></transforms></machine>)xml");
+  const std::string call = "vernier import table t.csv --machine slide.xml -o read.csv";
+  text::write_file(folder + "/t.csv", "slide [mm];foo\n0;0,1\n100;100,2\n200;200,4\n300;300,1\n");
+  ASSERT_EQ(run(call), 1) << said;
+  EXPECT_THAT(said,
+              testing::AllOf(HasSubstr("--column \"x[mm]=foo\""), testing::Not(HasSubstr("--deviation"))));
+  ASSERT_EQ(run(call + " --column 'x[mm]=foo'"), 0) << said;
+  // Deviations: no option reads them, and none is proposed.
+  text::write_file(folder + "/t.csv", "slide [mm];foo [mm]\n0;0,1\n100;0,2\n200;0,4\n300;0,1\n");
+  ASSERT_EQ(run(call), 1) << said;
+  EXPECT_THAT(said, HasSubstr("a new column SUM of the table: the position of slide plus \"foo [mm]\""));
+  EXPECT_THAT(said, testing::Not(HasSubstr("=foo")));
 }
 
 /// The columns become those of the axes by the machine file: no user has stated their unit.

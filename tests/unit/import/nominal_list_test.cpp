@@ -41,7 +41,7 @@ ImportTable points(bool names) {
 std::string join(const std::string& list, bool names, NominalTable* result = nullptr) {
   try {
     NominalTable joined =
-        with_nominal(points(names), list, "nom.csv", model::parse_machine(kMachine, "m.xml"), 2);
+        with_nominal(points(names), {list, "nom.csv"}, model::parse_machine(kMachine, "m.xml"), 2);
     const std::string text = measurement_csv(joined.table);
     if (result != nullptr) *result = std::move(joined);
     return text;
@@ -84,11 +84,15 @@ TEST(NominalList, WhatCannotBeJoinedIsNamed) {
               HasSubstr("pts.txt:1: \"A::Vol::P1\": the list of nominal positions (nom.csv) has no point"));
   EXPECT_THAT(join("Punkt;X [mm];Y [mm]\nP1;0;0\nP1;1;0\nP2;100;0\nP3;100;60\nP4;30;80\n", true),
               HasSubstr("nom.csv:3: \"P1\": the list of nominal positions has this point twice"));
+  EXPECT_THAT(join("Punkt;Y;X\nP1;0;0\nP2;0;100\nP3;60;100\nP4;80;30\n", true),
+              HasSubstr("nom.csv:1: \"X, Y\": the headings of these axes have no unit in the list of nominal "
+                        "positions. If this assignment and its units are right, give: --column \"X[mm]=X\" "
+                        "--column \"Y[mm]=Y\""));
   EXPECT_THAT(
-      join("Punkt;X;Y\nP1;0;0\nP2;100;0\nP3;100;60\nP4;30;80\n", true),
-      HasSubstr("nom.csv:1: \"X\": this heading has no unit: write it into the list, for example X[mm]"));
-  EXPECT_THAT(join("Punkt;X [mm]\nP1;0\nP2;100\nP3;100\nP4;30\n", true),
-              HasSubstr("nom.csv:1: \"Y\": the list of nominal positions has no column for this axis"));
+      join("Punkt;X [mm];Rest\nP1;0;1\nP2;100;1\nP3;100;2\nP4;30;2\n", true),
+      HasSubstr("nom.csv:1: \"Y\": the list of nominal positions has no column with the name of these "
+                "axes"));
+  EXPECT_THAT(join("Punkt\nP1\nP2\nP3\nP4\n", true), HasSubstr("refused: "));
 }
 
 /// A robot with three joints and links of 100, 80 and 60 mm.
@@ -103,21 +107,38 @@ constexpr const char* kRobot =
 TEST(NominalList, JointsMayHaveTheirUsualNames) {
   ImportTable table = points(true);
   const model::Machine machine = model::parse_machine(kRobot, "r.xml");
-  const NominalTable joined =
-      with_nominal(table, "Punkt;A1 [deg];A2 [deg];A3 [deg]\nP1;0;0;0\nP2;10;20;30\nP3;20;5;9\nP4;-5;6;70\n",
-                   "nom.csv", machine, 1e6);
+  const NominalTable joined = with_nominal(
+      table, {"Punkt;A1 [deg];A2 [deg];A3 [deg]\nP1;0;0;0\nP2;10;20;30\nP3;20;5;9\nP4;-5;6;70\n", "nom.csv"},
+      machine, 1e6);
   EXPECT_THAT(measurement_csv(joined.table),
               testing::StartsWith(
                   "joint_1[deg],joint_2[deg],joint_3[deg],point,x[mm],y[mm],z[mm]\n0,0,0,A::Vol::P1,"));
   EXPECT_EQ(joined.note, "");
   const NominalTable degrees = with_nominal(
-      table, "Punkt;A1;A2;A3\nP1;0;0;0\nP2;10;20;30\nP3;20;5;9\nP4;-5;6;70\n", "nom.csv", machine, 1e6);
+      table, {"Punkt;A1;A2;A3\nP1;0;0;0\nP2;10;20;30\nP3;20;5;9\nP4;-5;6;70\n", "nom.csv"}, machine, 1e6);
   EXPECT_EQ(measurement_csv(degrees.table), measurement_csv(joined.table));
   EXPECT_THAT(degrees.note, testing::HasSubstr("(A1 ...) have no unit: they are read in degrees"));
-  // These can be radians or degrees.
-  EXPECT_THROW(with_nominal(table, "Punkt;A1;A2;A3\nP1;0;0;0\nP2;1;0.2;0.3\nP3;2;0.5;0.9\nP4;-0.5;0.6;1.7\n",
-                            "nom.csv", machine, 1e6),
-               text::InputError);
+  // These can be radians or degrees, and with this tolerance the points do not show which.
+  NominalList bare{"Punkt;A1;A2;A3\nP1;0;0;0\nP2;1;0.2;0.3\nP3;2;0.5;0.9\nP4;-0.5;0.6;1.7\n", "nom.csv"};
+  std::string refusal;
+  try {
+    with_nominal(table, bare, machine, 1e6);
+  } catch (const text::InputError& error) {
+    refusal = error.what();
+  }
+  EXPECT_THAT(refusal,
+              HasSubstr("nom.csv:1: \"joint_1, joint_2, joint_3\": the list of nominal positions has no "
+                        "column with the name of these axes, and its columns A1 .. A3 have no unit. If "
+                        "this assignment and its units are right, give: --column \"joint_1[rad]=A1\""));
+  // The assignment of the user is that of `import table`.
+  bare.columns = {"joint_1[deg]=A1", "A2=joint_2[deg]", "joint_3[deg]=4"};
+  EXPECT_THAT(measurement_csv(with_nominal(table, bare, machine, 1e6).table),
+              testing::StartsWith("joint_1[deg],joint_2[deg],joint_3[deg],point,x[mm],y[mm],z[mm]\n0,0,0,"));
+  bare.columns = {"joint_1[deg]=A7"};
+  bare.option = "--nominal-column";
+  EXPECT_THAT([&] { with_nominal(table, bare, machine, 1e6); },
+              testing::ThrowsMessage<text::InputError>(
+                  HasSubstr("--nominal-column \"joint_1[deg]=A7\": the sheet has no column")));
 }
 
 }  // namespace

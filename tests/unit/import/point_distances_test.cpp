@@ -275,7 +275,7 @@ TEST(PointDistances, AListHasThePositionsOfTheMachine) {
   // The order of the positions is that of the machine file.
   NamedPoints points = stated_points({"A=7,30"}, {}, &machine);
   EXPECT_EQ(points.points[0].at_mm, (std::array<double, 3>{30, 7, 0}));
-  add_listed_points(points, {}, "Punkt;X [mm];Y [cm]\nA;1;1\nB;200;0,7\nC;5;5\n", "n.csv", machine);
+  add_listed_points(points, {}, {"Punkt;X [mm];Y [cm]\nA;1;1\nB;200;0,7\nC;5;5\n", "n.csv"}, machine);
   ASSERT_EQ(points.points.size(), 3u);
   EXPECT_EQ(points.points[1].at_mm, (std::array<double, 3>{200, 7, 0}));
   SheetWords words;

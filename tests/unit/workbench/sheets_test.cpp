@@ -123,6 +123,41 @@ TEST_F(Desk, PointsOfDistancesAreAskedForAndTaken) {
   EXPECT_TRUE(ask({{"machine", "xy.xml"}, {"nominal", "list.csv"}, {"tolerance", 2}})["message"].is_null());
 }
 
+TEST_F(Desk, TheLogOfARobotHasItsJointsInTheOrderOfTheMachine) {
+  write_file(folder.in("arm.xml"),
+             "<machine name=\"m\"><variables><machineaxes><turret rotary=\"true\"/><elbow rotary=\"true\"/>"
+             "</machineaxes></variables><transforms><sixdof n=\"1\" rZ=\"turret\"/>"
+             "<sixdof n=\"2\" X=\"300\" rZ=\"elbow\"/><sixdof n=\"3\" X=\"200\"/></transforms></machine>");
+  const auto ask = [&](const std::string& log, const json& column) {
+    write_file(folder.in("log.csv"), log);
+    const json request{{"name", "log.csv"}, {"machine", "arm.xml"}, {"column", column}};
+    return json::parse(api.reply({"POST", "/api/sheet", {}, request.dump()}).body);
+  };
+  const std::string rows = "P1;0;90;300;200;7\nP2;90;0.5;3;499;7\nP3;30;80;195;333;9\n";
+  const json open = ask("Name;A1;A2;X;Y;Z\n" + rows, nullptr);
+  EXPECT_EQ(open["robot"].dump(),
+            R"([{"column":1,"name":"turret","unit":"deg"},)"
+            R"({"column":2,"name":"elbow","unit":"deg"},)"
+            R"({"column":3,"name":"x","unit":"mm"},{"column":4,"name":"y","unit":"mm"},)"
+            R"({"column":5,"name":"z","unit":"mm"}])");
+  EXPECT_NE(open["message"].get<std::string>().find("press \"This assignment is right\""), std::string::npos);
+  // Joints that have their names are shown too, beside the point.
+  const json named = ask("Name;turret [deg];elbow [deg];X;Y;Z\n" + rows, nullptr);
+  EXPECT_EQ(named["robot"], open["robot"]);
+  // The button states what it shows.
+  json words = json::array();
+  for (const json& one : open["robot"])
+    words.push_back(one["name"].get<std::string>() + "[" + one["unit"].get<std::string>() +
+                    "]=" + std::to_string(one["column"].get<int>() + 1));
+  const json read = ask("Name;A1;A2;X;Y;Z\n" + rows, words);
+  EXPECT_TRUE(read["message"].is_null()) << read["message"];
+  EXPECT_FALSE(read.contains("robot"));
+  // Joints alone: nothing to assign, and the way to use them.
+  const json joints = ask("Name;A1;A2\nP1;0;90\nP2;90;0.5\nP3;30;80\n", nullptr);
+  EXPECT_TRUE(joints["robot"].empty());
+  EXPECT_NE(joints["message"].get<std::string>().find("in the field \"nominal\""), std::string::npos);
+}
+
 TEST(Sheets, WordsOfARequestAreTextsAndLists) {
   EXPECT_EQ(sheet_words(json{{"column", {"X[mm]=1"}}, {"skip", 2}}).skip, 2u);
   const importer::SheetWords words = sheet_words(json{{"fill", {"T"}}, {"one-motion", true}});

@@ -47,6 +47,36 @@ std::string call_of(const CLI::App& kind, const std::vector<std::string>& withou
   return call + options;
 }
 
+std::string options_of(const std::string& option, const std::vector<std::string>& words) {
+  std::string options;
+  for (const std::string& word : words) options += " " + option + " " + in_quotes(word);
+  return options;
+}
+
+std::string call_with(const CLI::App& kind, std::vector<std::string> without, const std::string& options) {
+  without.insert(without.end(), {"--output", "--json"});
+  const CLI::Option* const output = kind.get_option_no_throw("--output");
+  const bool named = output != nullptr && output->count() > 0;
+  return call_of(kind, without) + options + " -o " +
+         (named ? in_quotes(output->results().front()) : "NEW.csv");
+}
+
+void add_nominal_columns(CLI::App& kind, std::vector<std::string>& columns) {
+  kind.add_option(kNominalColumn, columns,
+                  "--nominal: meaning of a column of the list, \"J1[deg]=A1\" (heading or number), as "
+                  "--column of import table; repeat the option for each column")
+      ->needs("--nominal")
+      ->allow_extra_args(false);
+}
+
+importer::NominalList nominal_list(const CLI::App& kind, const std::string& file,
+                                   const std::vector<std::string>& columns) {
+  return {text::read_file(file), file, columns, kNominalColumn,
+          [&kind](const std::vector<std::string>& words) {
+            return call_with(kind, {kNominalColumn}, options_of(kNominalColumn, words));
+          }};
+}
+
 void require_axes(const importer::ImportTable& table, const model::Machine& machine, const CLI::App& kind,
                   const std::string& hint, const std::vector<std::string>& columns) {
   std::string first, set;
@@ -56,13 +86,8 @@ void require_axes(const importer::ImportTable& table, const model::Machine& mach
     set += " " + model::set_of_axis(axis);
   }
   if (first.empty()) return;
-  if (!columns.empty()) set.clear();
-  for (const std::string& column : columns) set += " --column " + in_quotes(column);
-  const CLI::Option* const output = kind.get_option_no_throw("--output");
-  const bool named = output != nullptr && output->count() > 0;
   throw text::InputError({table.file, 0}, first,
-                         hint + call_of(kind, {"--output", "--json"}) + set + " -o " +
-                             (named ? in_quotes(output->results().front()) : "NEW.csv"));
+                         hint + call_with(kind, {}, columns.empty() ? set : options_of("--column", columns)));
 }
 
 void add_import_output(CLI::App& kind, ImportOutput& output) {

@@ -8,6 +8,7 @@
 #include "tools/commands/measure/import_kinds.h"
 #include "tools/format/columns.h"
 #include "tools/import/columns/delimited.h"
+#include "tools/import/columns/point_columns.h"
 #include "tools/import/logs/machine_log.h"
 #include "tools/import/logs/nominal_list.h"
 #include "tools/import/tables/survey.h"
@@ -23,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 struct SurveyArguments {
   std::string file, map, machine, separator, decimal, comment;
-  std::vector<std::string> columns, constants;
+  std::vector<std::string> columns, constants, nominal_columns;
   std::size_t skip = 0, check_every = 0;
   double radius_mm = 0;
   std::string log;      // of the machine, tracker only
@@ -34,7 +35,7 @@ struct SurveyArguments {
 };
 
 /// The map file first, then the command line, which overrides it.
-importer::ColumnMap map_of(const SurveyArguments& arguments, const std::string& text, const CLI::App& kind) {
+importer::ColumnMap map_of(const SurveyArguments& arguments, const CLI::App& kind) {
   importer::ColumnMap map;
   if (!arguments.map.empty()) importer::read_column_map(map, text::read_file(arguments.map), arguments.map);
   for (const std::string& words : arguments.columns) importer::add_column(map, words);
@@ -44,12 +45,79 @@ importer::ColumnMap map_of(const SurveyArguments& arguments, const std::string& 
   if (kind.count("--comment") > 0) map.format.comment = arguments.comment == "none" ? "" : arguments.comment;
   if (kind.count("--skip") > 0) map.format.skip = arguments.skip;
   if (arguments.header) map.format.header = true;
-  if (map.columns.empty()) {
-    const std::string words = importer::columns_to_try(text, arguments.file, map.format);
-    throw text::InputError("no column has a meaning: give --map FILE or " +
-                           (words.empty() ? "--column \"3=x[mm]\"" : words.substr(1)));
-  }
   return map;
+}
+
+/// The assignments that the list of nominal positions needs beside these points; empty: none, or they are not
+/// known.
+std::string nominal_options_to_try(const SurveyArguments& arguments, const std::string& text,
+                                   const importer::ColumnMap& map) {
+  if (arguments.nominal.empty() || arguments.machine.empty()) return "";
+  std::string options;
+  try {
+    importer::ImportTable table = importer::mapped_table(text, arguments.file, map);
+    importer::finish_tracker(table);
+    importer::NominalList list{text::read_file(arguments.nominal), arguments.nominal,
+                               arguments.nominal_columns};
+    list.call = [&](const std::vector<std::string>& words) {
+      return options = options_of(kNominalColumn, words);
+    };
+    importer::with_nominal(table, list, model::read_machine(arguments.machine),
+                           arguments.log_options.tolerance_mm);
+  } catch (const text::InputError&) {
+    // The next call says what is wrong in the list.
+  }
+  return options;
+}
+
+/// Refuses a list of which no column has a meaning, with the call that reads it.
+void refuse_without_columns(const SurveyArguments& arguments, const std::string& text,
+                            const importer::ColumnMap& map, const CLI::App& kind) {
+  const importer::PointColumns point = importer::point_columns(text, arguments.file, map.format);
+  // Only a tracker's list is points and their names alone.
+  if (point.words.empty() || (point.by_order && kind.get_name() != "tracker"))
+    throw text::InputError(
+        "no column has a meaning: give --map FILE, or --column \"1=x[mm]\" for each column");
+  const std::string nominal =
+      nominal_options_to_try(arguments, text, importer::with_point_columns(map, point));
+  const bool comma = point.decimal_comma && !map.format.decimal_comma;
+  throw text::InputError(fmt::format(
+      "no column has a meaning: give --map FILE. {}, give: {}",
+      fmt::format("If {} x, y and z of the points in the units of this call{}",
+                  point.by_order ? "the first columns of numbers are" : "the columns of these names are",
+                  nominal.empty() ? "" : ", and the columns of the list of nominal positions are the axes"),
+      call_with(kind, {"--decimal", kNominalColumn},
+                options_of("--column", point.words) +
+                    (comma                         ? " --decimal comma"
+                     : kind.count("--decimal") > 0 ? " --decimal " + arguments.decimal
+                                                   : "") +
+                    nominal)));
+}
+
+/// Refuses a list of points of which only some coordinates are read: the fit would use a third of the
+/// readings without a word.
+void refuse_unread_coordinates(const SurveyArguments& arguments, const std::string& text,
+                               const importer::ColumnMap& map, const CLI::App& kind) {
+  const importer::UnreadCoordinates unread = importer::unread_coordinates(text, arguments.file, map);
+  if (unread.columns.empty()) return;
+  const importer::PointColumns point = importer::point_columns(text, arguments.file, map.format);
+  std::string missing, columns;
+  std::vector<std::string> others;
+  for (const std::string& one : unread.missing) missing += (missing.empty() ? "" : ", ") + one;
+  for (const std::string& one : unread.columns) {
+    columns += (columns.empty() ? "" : ", ") + one;
+    others.push_back(fmt::format("{}=unused_{}", one, others.size() + 1));
+  }
+  const std::string whole =
+      point.words.empty() ? fmt::format("give --column for {}", missing)
+                          : "if the columns are x, y and z of the points, give: " +
+                                call_with(kind, {"--column", "--map"}, options_of("--column", point.words));
+  throw text::InputError(
+      {arguments.file, 0}, missing,
+      fmt::format(
+          "the list has columns of numbers that are not read (column {}), and no column is {}: {}; if "
+          "the instrument measured nothing else, give: {}",
+          columns, missing, whole, call_with(kind, {}, options_of("--column", others))));
 }
 
 Json summary(const std::string& kind, const importer::ImportTable& table) {
@@ -148,13 +216,17 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
   Survey survey;
   importer::ImportTable& table = survey.table;
   const std::string text = sheet::utf8_text(text::read_file(arguments.file));
-  table = importer::mapped_table(text, arguments.file, map_of(arguments, text, kind));
-  if (kind_name == "tracker")
+  const importer::ColumnMap map = map_of(arguments, kind);
+  if (map.columns.empty()) refuse_without_columns(arguments, text, map, kind);
+  table = importer::mapped_table(text, arguments.file, map);
+  if (kind_name == "tracker") {
     importer::finish_tracker(table);
-  else if (kind_name == "camera")
+    refuse_unread_coordinates(arguments, text, map, kind);
+  } else if (kind_name == "camera") {
     importer::finish_camera(table, !arguments.fixed_camera);
-  else
+  } else {
     importer::finish_probe(table, arguments.radius_mm);
+  }
   for (const auto& [option, file] :
        {std::pair("--log", arguments.log), std::pair("--nominal", arguments.nominal)})
     if (!file.empty() && arguments.machine.empty())
@@ -168,7 +240,7 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
   }
   if (!arguments.nominal.empty()) {
     survey.joined =
-        importer::with_nominal(table, text::read_file(arguments.nominal), arguments.nominal,
+        importer::with_nominal(table, nominal_list(kind, arguments.nominal, arguments.nominal_columns),
                                model::read_machine(arguments.machine), arguments.log_options.tolerance_mm);
     table = survey.joined->table;
   }
@@ -229,6 +301,7 @@ void add_tracker_kind(CLI::App& kind) {
                   "command joins it by the names of the points, or by row number; requires --machine")
       ->type_name(kReads)
       ->excludes("--log");
+  add_nominal_columns(kind, arguments->nominal_columns);
   kind.add_option("--dwell", log.dwell_s, "--log: least standstill, s")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

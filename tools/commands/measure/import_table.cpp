@@ -12,7 +12,9 @@
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/columns/delimited.h"
 #include "tools/import/distances/distance_table.h"
+#include "tools/import/logs/open_axes.h"
 #include "tools/import/logs/point_positions.h"
+#include "tools/import/logs/robot_log.h"
 #include "tools/import/reading/sheet_import.h"
 #include "tools/import/tables/survey.h"
 #include "tools/import/words/joint_names.h"
@@ -32,6 +34,7 @@ struct TableArguments {
   std::string file, profile, save_profile, machine, output, json;
   std::vector<std::string> points;  // of distances between named points
   std::string nominal;              // list of the positions of these points
+  std::vector<std::string> nominal_columns;
   importer::SheetWords words;
   std::size_t check_every = 0;
   bool preview = false;
@@ -68,116 +71,22 @@ void print_rows(std::FILE* out, const std::string& csv) {
   }
 }
 
-/// The axes without a column, and the columns of numbers that nothing claims.
-struct OpenAxes {
-  std::vector<importer::MissingAxis> axes;
-  std::vector<importer::FreeColumn> columns;
-  importer::JointColumns found;
-  std::vector<std::string> headings() const {
-    std::vector<std::string> list;
-    for (const auto& [axis, column] : found.pairs) list.push_back(columns[column].heading);
-    return list;
-  }
-  /// Words of the option --column for the columns that were found.
-  std::vector<std::string> words() const {
-    std::vector<std::string> list;
-    for (const auto& [axis, column] : found.pairs)
-      list.push_back(importer::column_word(axes[axis], columns[column]));
-    return list;
-  }
-};
-
-OpenAxes open_axes(const model::Machine& machine, const importer::SheetReading& reading) {
-  using Use = importer::SheetColumn::Use;
-  OpenAxes open;
-  const auto stated = [&](const std::string& name) {
-    return std::any_of(reading.columns.begin(), reading.columns.end(),
-                       [&](const auto& one) { return one.use == Use::kColumn && one.name == name; }) ||
-           std::any_of(reading.wishes.constants.begin(), reading.wishes.constants.end(),
-                       [&](const auto& one) { return one.name == name; });
-  };
-  for (const model::Axis& axis : machine.axes)
-    if (!stated(axis.name)) open.axes.push_back({axis.name, axis.rotary});
-  for (std::size_t k = 0; k < reading.columns.size(); ++k) {
-    const importer::SheetColumn& column = reading.columns[k];
-    if (column.use != Use::kColumn || column.words || column.why != "by its heading" ||
-        importer::is_known_name(column.name) || importer::is_sense(column.name) ||
-        machine.find_axis(column.name) || machine.find_input(column.name))
-      continue;
-    open.columns.push_back({reading.table.headings[k].text, reading.table.headings[k].name, column.unit});
-  }
-  open.found = importer::joint_columns(open.axes, open.columns);
-  return open;
-}
-
-/// Largest size of the values of a column.
-double largest_of(const importer::SheetReading& reading, const std::string& heading) {
-  double largest = 0;
-  for (std::size_t k = 0; k < reading.table.headings.size(); ++k)
-    if (reading.table.headings[k].text == heading)
-      for (std::size_t row = reading.table.first_data; row < reading.sheet.rows.size(); ++row)
-        if (const auto value = sheet::number_at(reading.sheet, row, k))
-          largest = std::max(largest, std::abs(*value));
-  return largest;
-}
-
-/// Columns x, y, z in any letters, without a unit in the heading or by an option: words of --column that make
-/// them the measured point in mm. Empty without all three.
-std::vector<std::string> point_without_units(const importer::SheetReading& reading) {
-  std::vector<std::string> words;
-  for (const char* const axis : {"X", "Y", "Z"})
-    for (std::size_t k = 0; k < reading.columns.size(); ++k) {
-      const sheet::Heading& heading = reading.table.headings[k];
-      if (text::in_small_letters(heading.name) != importer::reading_of(axis) || !heading.unit.empty() ||
-          reading.columns[k].why != "by its heading")
-        continue;
-      words.push_back(fmt::format("{}[mm]={}", *importer::reading_of(axis), heading.text));
-      break;
-    }
-  constexpr std::size_t kCoordinates = 3;
-  return words.size() == kCoordinates ? words : std::vector<std::string>{};
-}
-
-/// Refuses the log of a robot whose joints or point have no units, with one call that states all of them.
-void refuse_robot_without_units(const OpenAxes& open, const importer::SheetReading& reading,
-                                const CLI::App& kind) {
-  constexpr double kWholeTurn = 6.3;  // rad, rounded up: larger angles are in deg
-  // A unit by --unit is that of all columns, and may be right for one of the two only.
-  std::vector<std::string> stated;
-  for (const importer::FreeColumn& one : open.columns)
-    for (const sheet::Heading& heading : reading.table.headings)
-      if (heading.text == one.heading) {
-        stated.push_back(heading.unit);
-        break;
-      }
-  OpenAxes assumed = open;
-  for (std::size_t k = 0; k < assumed.columns.size(); ++k)
-    assumed.columns[k].unit = stated[k].empty() ? "deg" : stated[k];
-  assumed.found = importer::joint_columns(assumed.axes, assumed.columns);
-  const std::vector<std::string> point = point_without_units(reading);
-  if (!assumed.found.sure || point.empty()) return;
-  double largest = 0;
-  for (const auto& [axis, column] : assumed.found.pairs)
-    if (stated[column].empty())
-      largest = std::max(largest, largest_of(reading, open.columns[column].heading));
-  std::string options;
-  for (const auto& [axis, column] : assumed.found.pairs)
-    options += fmt::format(" --column \"{}{}={}\"", open.axes[axis].name,
-                           !stated[column].empty() ? ""
-                           : largest < kWholeTurn  ? "[rad]"
-                                                   : "[deg]",
-                           open.columns[column].heading);
-  for (const std::string& word : point) options += fmt::format(" --column \"{}\"", word);
-  const CLI::Option* const output = kind.get_option_no_throw("--output");
-  throw text::InputError(
-      {reading.sheet.file, reading.sheet.line[reading.table.heading_row]}, "",
-      fmt::format(
-          "the columns of the point have no unit. If an instrument measured this point (a position that the "
-          "control shows is computed from the joints, and is no measurement), the point is in mm, and the "
-          "joints "
-          "are in the units of this call, give: {}{} -o {}",
-          call_of(kind, {"--output", "--json", "--unit", "--column"}), options,
-          output->count() > 0 ? lint::quoted_for_shell(output->results().front()) : "NEW.csv"));
+/// Refuses the log of a robot that needs an assignment, with one call that states all of it, and with the
+/// call for points in another file.
+void refuse_robot_log(const model::Machine& machine, const importer::SheetReading& reading,
+                      const TableArguments& arguments, const CLI::App& kind) {
+  const std::optional<importer::RobotLog> log = importer::robot_log(machine, reading);
+  if (!log) return;
+  const std::string tracker =
+      "import their list (POINTS) with this file as the positions of the axes: vernier import tracker "
+      "POINTS" +
+      options_of("--nominal", {arguments.file}) + options_of("--machine", {arguments.machine}) +
+      options_of(kNominalColumn, log->joints) + " -o NEW.csv";
+  std::vector<std::string> words = log->joints;
+  words.insert(words.end(), log->point.begin(), log->point.end());
+  std::string why = importer::why_not_read(*log, tracker);
+  if (!log->point.empty()) why += ", give: " + call_with(kind, {"--unit"}, options_of("--column", words));
+  throw text::InputError({reading.sheet.file, reading.sheet.line[reading.table.heading_row]}, "", why);
 }
 
 /// The other sheets with tables, with a command for each: only one sheet is read.
@@ -203,16 +112,14 @@ void note_other_sheets(sheet::Sheet& sheet, const CLI::App& kind) {
 /// Refuses distances between named points without their positions, with the call to complete.
 void refuse_without_positions(const importer::PointDistances& distances, const CLI::App& kind) {
   if (!distances.asks_positions) return;
-  const CLI::Option* const output = kind.get_option_no_throw("--output");
   throw importer::refusal_for_positions(
       distances,
-      fmt::format("give: {}{} -o {}", call_of(kind, {"--output", "--json", "--preview"}),
-                  importer::options_of_points(distances),
-                  output->count() > 0 ? lint::quoted_for_shell(output->results().front()) : "NEW.csv"));
+      fmt::format("give: {}", call_with(kind, {"--preview"}, importer::options_of_points(distances))));
 }
 
 /// The points of the options, and of the list of nominal positions.
-importer::NamedPoints points_of(const TableArguments& arguments, const model::Machine* machine) {
+importer::NamedPoints points_of(const TableArguments& arguments, const model::Machine* machine,
+                                const CLI::App& kind) {
   importer::NamedPoints points =
       importer::stated_points(arguments.points, arguments.words.constants, machine);
   points.tolerance_mm = arguments.words.points.tolerance_mm;
@@ -221,8 +128,8 @@ importer::NamedPoints points_of(const TableArguments& arguments, const model::Ma
     throw text::InputError(
         {}, "--nominal",
         "this option requires --machine: the machine file states the axes whose positions the list has");
-  importer::add_listed_points(points, arguments.words.constants, text::read_file(arguments.nominal),
-                              arguments.nominal, *machine);
+  importer::add_listed_points(points, arguments.words.constants,
+                              nominal_list(kind, arguments.nominal, arguments.nominal_columns), *machine);
   return points;
 }
 
@@ -235,14 +142,14 @@ void run_table(const TableArguments& arguments, const CLI::App& kind) {
   if (!arguments.machine.empty()) machine = model::read_machine(arguments.machine);
   if (machine)
     for (const model::Axis& axis : machine->axes) words.axes.push_back(axis.name);
-  words.points = points_of(arguments, machine ? &*machine : nullptr);
+  words.points = points_of(arguments, machine ? &*machine : nullptr, kind);
   const std::string bytes = text::read_file(arguments.file);
   importer::SheetReading reading = importer::read_as_sheet(bytes, arguments.file, words, wishes);
-  OpenAxes open;
+  importer::OpenAxes open;
   if (reading.distances) refuse_without_positions(*reading.distances, kind);
   if (machine && !reading.distances) {
-    open = open_axes(*machine, reading);
-    if (!open.axes.empty()) refuse_robot_without_units(open, reading, kind);
+    refuse_robot_log(*machine, reading, arguments, kind);
+    open = importer::open_axes(*machine, reading);
     if (open.found.sure) {
       const std::vector<std::string> more = open.words();
       words.columns.insert(words.columns.end(), more.begin(), more.end());
@@ -363,6 +270,7 @@ void add_table_kind(CLI::App& kind) {
           "list of the positions of the points (table with a column of names, and a heading and a unit "
           "for each axis), in place of --point; requires --machine")
       ->type_name(kReads);
+  add_nominal_columns(kind, arguments->nominal_columns);
   kind.add_option(
           "--tolerance", arguments->words.points.tolerance_mm,
           "--point, --nominal: largest permitted difference of a nominal distance of the table from the "

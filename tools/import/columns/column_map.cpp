@@ -226,34 +226,6 @@ void ImportTable::add(const std::string& name, const std::string& unit, const st
   columns.push_back(std::move(column));
 }
 
-std::string columns_to_try(const std::string& text, const std::string& file, const DelimitedFormat& format) {
-  const DelimitedFile read = parse_delimited(text, file, format);
-  const std::vector<std::string>& first = read.header.empty() ? read.rows.front() : read.header;
-  if (read.rows.size() < 2) return {};
-  const std::vector<std::string>& second = read.rows[read.header.empty() ? 1 : 0];
-  const auto is_number = [](const std::string& cell) {
-    return number_cell(cell, false) || number_cell(cell, true);
-  };
-  if (std::any_of(first.begin(), first.end(), is_number)) return {};  // no headings
-  std::string words;
-  bool comma = false;
-  std::size_t coordinates = 0;
-  for (std::size_t k = 0; k < first.size(); ++k) {
-    const sheet::Heading heading = sheet::parse_heading(first[k]);
-    const std::string small = text::in_small_letters(heading.name);
-    if (k == 0 && !is_number(second[k])) {
-      words += fmt::format(" --column \"{}=point\"", first[k]);
-    } else if (std::find(std::begin(format::columns::kPoint), std::end(format::columns::kPoint), small) !=
-               std::end(format::columns::kPoint)) {
-      words +=
-          fmt::format(" --column \"{}={}[{}]\"", first[k], small, heading.unit.empty() ? "mm" : heading.unit);
-      comma = comma || !number_cell(second[k], false);
-      ++coordinates;
-    }
-  }
-  return coordinates == std::size(format::columns::kPoint) ? words + (comma ? " --decimal comma" : "") : "";
-}
-
 ImportTable mapped_table(const std::string& text, const std::string& file, const ColumnMap& map) {
   DelimitedFormat format = map.format;
   for (const MappedColumn& column : map.columns)

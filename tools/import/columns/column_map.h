@@ -68,10 +68,6 @@ struct ImportTable {
   void add(const std::string& name, const std::string& unit, const std::vector<double>& values);
 };
 
-/// Returns the options --column (and --decimal) that read a table with the headings X, Y, Z and a first
-/// column of names: to show to the user. Empty for other tables. Throws InputError as parse_delimited().
-std::string columns_to_try(const std::string& text, const std::string& file, const DelimitedFormat& format);
-
 /// Returns the columns of a file that the map names. Every number is written with a decimal point. Columns of
 /// words are not changed. Throws InputError with file, line and word for: a column that does not exist, a
 /// cell that is not a number, an unknown unit, a column name that occurs twice.

@@ -61,7 +61,8 @@ void refuse_heading(const sheet::SheetTable& table, const std::string& option, c
       "{} \"{}\": the sheet has no column with this heading; its headings are {}", option, words, known));
 }
 
-void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words) {
+void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words,
+                   const std::string& option) {
   // A heading may hold the sign itself: the split that makes a heading of one side is the one that was meant.
   for (const bool last : {false, true}) {
     const auto [left, right] = halves(words, last, {}, "name[unit]=HEADING");
@@ -74,7 +75,7 @@ void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const st
       return;
     }
   }
-  refuse_heading(table, "--column", words);
+  refuse_heading(table, option, words);
 }
 
 namespace {

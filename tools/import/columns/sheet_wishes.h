@@ -58,8 +58,9 @@ struct SheetWishes {
 
 /// Adds an assignment of the form "x[mm]=X ist" (name=heading). The form "X ist=x[mm]" is also accepted, as
 /// in the other imports. The headings of `table` determine which side is the heading. Throws InputError if
-/// the text is not an assignment.
-void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words);
+/// the text is not an assignment. `option`: the option that has these words, for the error message.
+void assign_column(SheetWishes& wishes, const sheet::SheetTable& table, const std::string& words,
+                   const std::string& option = "--column");
 /// Adds an assignment of a deviation, for example "X[um]=Abweichung". The measured value is then the position
 /// of the axis plus this deviation. A size alone ("20mm", "2deg") is the largest plausible deviation of all
 /// columns.

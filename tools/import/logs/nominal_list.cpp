@@ -2,18 +2,16 @@
 #include "tools/import/logs/nominal_list.h"
 
 #include <fmt/format.h>
-#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
+#include "tools/import/logs/nominal_points.h"
 #include "tools/import/reading/sheet_import.h"
-#include "tools/import/words/joint_names.h"
-#include "tools/maths/alignment.h"
-#include "tools/model/chain/chain.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
@@ -24,103 +22,9 @@ namespace {
 
 constexpr const char* kPointTwice = "the list of nominal positions has this point twice";
 
-/// The rows of a list of nominal positions.
-struct List {
-  SheetReading reading;
-  std::vector<std::size_t> rows;  // rows that are not blank
-  std::string note;               // what was assumed; empty: nothing
-
-  const std::string& cell(std::size_t i, std::size_t column) const {
-    return reading.sheet.rows[rows[i]][column];
-  }
-  text::Place place(std::size_t i) const { return {reading.sheet.file, reading.sheet.line[rows[i]]}; }
-  text::Place heading() const { return {reading.sheet.file, reading.sheet.line[reading.table.heading_row]}; }
-};
-
-/// True if the numbers of a column without a unit can only be degrees: one of them is more than a turn in
-/// radians.
-bool must_be_degrees(const List& list, std::size_t column) {
-  constexpr double kTurn_rad = 6.2832;  // a whole turn, rounded up
-  double most = 0;
-  for (std::size_t i = 0; i < list.rows.size(); ++i) {
-    const auto number = sheet::number_at(list.reading.sheet, list.rows[i], column);
-    if (!number) return false;
-    most = std::max(most, std::abs(*number));
-  }
-  return most > kTurn_rad;
-}
-
-/// Gives the columns of a robot's joints under their usual names (A1, J1, q1) the names of the axes, as the
-/// import of a table does. Joints of which no heading has a unit are in degrees if one of them must be, with
-/// a note: the distances of the points show a mistake.
-void take_joints(List& list, const model::Machine& machine) {
-  SheetReading& reading = list.reading;
-  std::vector<MissingAxis> axes;
-  for (const model::Axis& axis : machine.axes)
-    if (std::none_of(reading.columns.begin(), reading.columns.end(), [&](const SheetColumn& one) {
-          return one.name == axis.name && !(axis.rotary && one.unit.empty());
-        }))
-      axes.push_back({axis.name, axis.rotary});
-  std::vector<FreeColumn> columns, in_degrees;
-  std::vector<std::size_t> at;
-  for (std::size_t k = 0; k < reading.columns.size(); ++k) {
-    const SheetColumn& column = reading.columns[k];
-    const auto axis = machine.find_axis(column.name);
-    if (column.use != SheetColumn::Use::kColumn || column.words || (axis && !column.unit.empty())) continue;
-    columns.push_back({reading.table.headings[k].text, reading.table.headings[k].name, column.unit});
-    in_degrees.push_back(columns.back());
-    if (column.unit.empty()) in_degrees.back().unit = "deg";
-    at.push_back(k);
-  }
-  JointColumns found = joint_columns(axes, columns);
-  const bool states_no_unit = std::all_of(columns.begin(), columns.end(), [](const FreeColumn& one) {
-    return one.unit.empty() || format::find_unit(one.unit)->dimension != format::Dimension::kAngle;
-  });
-  if (!found.sure && states_no_unit) {
-    found = joint_columns(axes, in_degrees);
-    if (!found.sure || std::none_of(found.pairs.begin(), found.pairs.end(),
-                                    [&](const auto& pair) { return must_be_degrees(list, at[pair.column]); }))
-      return;
-    for (const JointColumns::Pair& pair : found.pairs)
-      if (reading.columns[at[pair.column]].unit.empty()) reading.columns[at[pair.column]].unit = "deg";
-    list.note = fmt::format("{}: the columns of the joints ({} ...) have no unit: they are read in degrees",
-                            reading.sheet.file, columns[found.pairs.front().column].heading);
-  }
-  if (!found.sure) return;
-  for (const JointColumns::Pair& pair : found.pairs)
-    reading.columns[at[pair.column]].name = axes[pair.axis].name;
-}
-
-List read_list(const std::string& bytes, const std::string& file, const model::Machine& machine) {
-  SheetWords words;
-  for (const model::Axis& axis : machine.axes) words.axes.push_back(axis.name);
-  List list{read_as_sheet(bytes, file, words), {}, {}};
-  const sheet::Sheet& sheet = list.reading.sheet;
-  for (std::size_t row = list.reading.table.first_data; row < sheet.rows.size(); ++row)
-    if (!sheet::is_blank(sheet.rows[row])) list.rows.push_back(row);
-  take_joints(list, machine);
-  return list;
-}
-
-/// The column of an axis in the list.
-std::size_t column_of_axis(const List& list, const model::Axis& axis) {
-  const std::vector<SheetColumn>& columns = list.reading.columns;
-  const std::string example = format::axis_heading(format::AxisQuantity::kPosition, axis.name, axis.rotary);
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    if (columns[k].use != SheetColumn::Use::kColumn || columns[k].name != axis.name) continue;
-    if (columns[k].unit.empty())
-      throw text::InputError(list.heading(), list.reading.table.headings[k].text,
-                             "this heading has no unit: write it into the list, for example " + example);
-    return k;
-  }
-  throw text::InputError(
-      list.heading(), axis.name,
-      "the list of nominal positions has no column for this axis: write a heading such as " + example +
-          " above the column, or add the column");
-}
-
 /// The number in a cell of the list, with a decimal point.
-std::string position_cell(const List& list, std::size_t i, std::size_t column, const model::Axis& axis) {
+std::string position_cell(const ListedRows& list, std::size_t i, std::size_t column,
+                          const model::Axis& axis) {
   const std::string& cell = list.cell(i, column);
   const auto number = sheet::plain_number(cell, list.reading.sheet.decimal_comma);
   if (!number)
@@ -129,7 +33,7 @@ std::string position_cell(const List& list, std::size_t i, std::size_t column, c
 }
 
 /// The column with the names of the points: the first one that is no axis and has a cell in each row.
-std::size_t column_of_names(const List& list, const model::Machine& machine) {
+std::size_t column_of_names(const ListedRows& list, const model::Machine& machine) {
   const std::vector<SheetColumn>& columns = list.reading.columns;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (columns[k].use == SheetColumn::Use::kDeviation || machine.find_axis(columns[k].name)) continue;
@@ -153,7 +57,7 @@ bool has_words(const std::vector<std::string>& cells) {
 }
 
 /// Row of the list for each point, by a column of names in both; empty: there is no such column.
-std::vector<std::size_t> rows_by_name(const ImportTable& points, const List& list, std::string& names) {
+std::vector<std::size_t> rows_by_name(const ImportTable& points, const ListedRows& list, std::string& names) {
   for (const ImportTable::Column& column : points.columns) {
     if (!column.unit.empty() || format::find_column(column.name) != nullptr) continue;
     for (std::size_t k = 0; k < list.reading.columns.size(); ++k) {
@@ -191,7 +95,7 @@ std::vector<std::size_t> rows_by_name(const ImportTable& points, const List& lis
   return {};
 }
 
-std::vector<std::size_t> rows_by_number(const ImportTable& points, const List& list) {
+std::vector<std::size_t> rows_by_number(const ImportTable& points, const ListedRows& list) {
   if (points.line.size() != list.rows.size())
     throw text::InputError(
         list.heading(), "",
@@ -204,106 +108,162 @@ std::vector<std::size_t> rows_by_number(const ImportTable& points, const List& l
   return rows;
 }
 
-/// Positions of a reflector at an unknown place on the tool: the place in the frame of the tool and the rigid
-/// motion that agree best with the points `to`, each found for the other in turn.
-Eigen::Matrix3Xd reflector_positions(const model::Poses& nominal, const Eigen::Matrix3Xd& to) {
-  constexpr int kMostTurns = 500;  // each reduces the difference by the spread of the orientations
-  constexpr double kSettled_mm = 1e-4;
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();
-  Eigen::Matrix3Xd from = nominal.position;
-  for (int turn = 0; turn < kMostTurns; ++turn) {
-    const maths::RigidMotion motion = maths::align(from, to);
-    Eigen::Vector3d next = Eigen::Vector3d::Zero();
-    for (Eigen::Index i = 0; i < to.cols(); ++i)
-      next += nominal.rotation[static_cast<std::size_t>(i)].transpose() *
-              (motion.rotation.transpose() * (to.col(i) - motion.translation) - nominal.position.col(i));
-    next /= static_cast<double>(to.cols());
-    const bool settled = (next - place).norm() < kSettled_mm;
-    place = next;
-    for (Eigen::Index i = 0; i < to.cols(); ++i)
-      from.col(i) = nominal.position.col(i) + nominal.rotation[static_cast<std::size_t>(i)] * place;
-    if (settled) break;
-  }
-  return from;
-}
-
-/// Compares the points with the nominal tool points: a list in another order would give a false result.
-void check_distances(NominalTable& result, const model::Machine& machine, double tolerance_mm) {
-  const ImportTable& table = result.table;
-  for (const char* name : format::columns::kPoint) {
-    const auto* const column = table.find(name);
-    if (column == nullptr) return;
-    if (std::any_of(column->cells.begin(), column->cells.end(),
-                    [](const auto& cell) { return cell.empty(); }))
-      return;
-  }
-  const auto count = static_cast<Eigen::Index>(table.line.size());
-  model::States states = model::make_states(table.line.size(), machine);
-  model::make_one_run(states, "list");
-  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
-    const std::vector<double> values = table.numbers(machine.axes[a].name);
-    states.axis[a] = Eigen::Map<const Eigen::VectorXd>(values.data(), count);
-  }
-  const model::Poses nominal = model::forward(model::nominal_machine(machine), states);
-  Eigen::Matrix3Xd to(3, count);
-  Eigen::Index row = 0;
-  for (const char* name : format::columns::kPoint) {
-    const std::vector<double> values = table.numbers(name);
-    to.row(row++) = Eigen::Map<const Eigen::RowVectorXd>(values.data(), count);
-  }
-  if (!maths::fixes_motion(nominal.position)) return;
-  const Eigen::Matrix3Xd from =
-      machine.tool_shifts.empty() ? nominal.position : reflector_positions(nominal, to);
-  const Eigen::VectorXd off = maths::aligned_error(maths::align(from, to), from, to).colwise().norm();
-  result.rms_mm = std::sqrt(off.squaredNorm() / static_cast<double>(off.size()));
-  constexpr double kBeyond = 3;  // tolerances, as in pair_points
-  Eigen::Index worst = 0;
-  if (off.maxCoeff(&worst) <= kBeyond * tolerance_mm) return;
-  throw text::InputError(
-      {table.file, table.line[static_cast<std::size_t>(worst)]}, "",
-      fmt::format(
-          "this point is {:.3g} mm from its nominal position after the best rigid motion of all points "
-          "({}): check the order and the names of both lists{}, or give a larger --tolerance",
-          off[worst],
-          result.names.empty() ? "joined by row number" : "joined by the names in " + result.names,
-          machine.tool_shifts.empty()
-              ? "; if the points are those of a reflector at an unknown place on the tool, declare it in the "
-                "machine file (vernier set MACHINE --reflector)"
-              : ""));
-}
-
-}  // namespace
-
-NominalTable with_nominal(const ImportTable& points, const std::string& bytes, const std::string& file,
-                          const model::Machine& machine, double tolerance_mm) {
-  const List list = read_list(bytes, file, machine);
-  NominalTable result;
-  result.note = list.note;
-  std::vector<std::size_t> rows = rows_by_name(points, list, result.names);
-  if (result.names.empty()) rows = rows_by_number(points, list);
-  std::vector<std::size_t> used = rows;
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  result.unused = list.rows.size() - used.size();
-  result.table = {points.file, {}, points.line};
+/// The points with the positions of the axes; `rows`: the row of the list for each point.
+ImportTable joined(const ImportTable& points, const ListedRows& list, const std::vector<std::size_t>& rows,
+                   const model::Machine& machine) {
+  ImportTable table{points.file, {}, points.line};
   for (const model::Axis& axis : machine.axes) {
     if (points.find(axis.name) != nullptr) continue;
     const std::size_t k = column_of_axis(list, axis);
     ImportTable::Column column{axis.name, list.reading.columns[k].unit, {}};
-    for (const std::size_t i : rows) {
-      column.cells.push_back(position_cell(list, i, k, axis));
-    }
-    result.table.columns.push_back(std::move(column));
+    for (const std::size_t i : rows) column.cells.push_back(position_cell(list, i, k, axis));
+    table.columns.push_back(std::move(column));
   }
-  result.table.columns.insert(result.table.columns.end(), points.columns.begin(), points.columns.end());
-  check_distances(result, machine, tolerance_mm);
+  table.columns.insert(table.columns.end(), points.columns.begin(), points.columns.end());
+  return table;
+}
+
+std::vector<std::size_t> rows_of_points(const ImportTable& points, const ListedRows& list,
+                                        std::string& names) {
+  std::vector<std::size_t> rows = rows_by_name(points, list, names);
+  return names.empty() ? rows_by_number(points, list) : rows;
+}
+
+constexpr double kTolerances = 3;  // of a point from its position, as in pair_points
+
+Eigen::VectorXd distances(const ImportTable& table, const model::Machine& machine) {
+  return distances_from_nominal(table, machine,
+                                machine.tool_shifts.empty() ? ToolPlace::kOfTheMachine : ToolPlace::kUnknown);
+}
+
+/// Largest distance of a point from its nominal position, mm, if the joints of the list are in `unit`; no
+/// value: the points cannot be compared.
+std::optional<double> farthest_mm(ImportTable table, const ImportTable& points, const model::Machine& machine,
+                                  const std::string& unit) {
+  for (ImportTable::Column& column : table.columns)
+    if (const auto axis = machine.find_axis(column.name);
+        axis && machine.axes[*axis].rotary && points.find(column.name) == nullptr)
+      column.unit = unit;
+  const Eigen::VectorXd off = distances(table, machine);
+  return off.size() == 0 ? std::nullopt : std::optional(off.maxCoeff());
+}
+
+/// What the points say about joints without units, and the unit in which they agree: changes `list.open`.
+std::string settle_units(const ImportTable& points, ListedRows& list, const model::Machine& machine,
+                         double tolerance_mm) {
+  ListedRows proposed = list;
+  assign_open_axes(proposed);
+  std::optional<double> degrees, radians;
+  try {
+    std::string names;
+    const ImportTable table = joined(points, proposed, rows_of_points(points, list, names), machine);
+    degrees = farthest_mm(table, points, machine, "deg");
+    radians = farthest_mm(table, points, machine, "rad");
+  } catch (const text::InputError&) {
+    return "";  // the lists cannot be joined yet: the next call says why
+  }
+  if (!degrees || !radians) return "";
+  const double limit = kTolerances * tolerance_mm;
+  if ((*degrees > limit) == (*radians > limit)) return "";
+  const bool in_radians = *radians <= limit;
+  for (FreeColumn& column : list.open.columns)
+    if (column.assumed != "mm") column.assumed = in_radians ? "rad" : "deg";
+  return fmt::format(
+      ". In {} the points agree with the nominal machine within {:.3g} mm (in {}: {:.3g} mm): the joints are "
+      "in [{}]",
+      in_radians ? "radians" : "degrees", in_radians ? *radians : *degrees,
+      in_radians ? "degrees" : "radians", in_radians ? *degrees : *radians, in_radians ? "rad" : "deg");
+}
+
+/// The other unit of angles, if all points agree in it: a sentence with the way on; empty: they do not.
+std::string other_unit(const ImportTable& table, const ImportTable& points, const ListedRows& list,
+                       const NominalList& nominal, const model::Machine& machine, double tolerance_mm) {
+  std::vector<std::size_t> joints;
+  std::vector<std::string> units;
+  for (const model::Axis& axis : machine.axes) {
+    if (!axis.rotary || points.find(axis.name) != nullptr) continue;
+    joints.push_back(column_of_axis(list, axis));
+    units.push_back(list.reading.columns[joints.back()].unit);
+  }
+  const bool degrees =
+      std::all_of(units.begin(), units.end(), [](const auto& unit) { return unit == "deg"; });
+  const bool radians =
+      std::all_of(units.begin(), units.end(), [](const auto& unit) { return unit == "rad"; });
+  if (joints.empty() || (!degrees && !radians) || (degrees && !may_be_radians(list.reading, joints)))
+    return "";
+  const std::string other = degrees ? "rad" : "deg";
+  const std::optional<double> off = farthest_mm(table, points, machine, other);
+  if (!off || *off > kTolerances * tolerance_mm) return "";
+  std::vector<std::string> words;
+  std::string stated;
+  for (const std::size_t k : joints) {
+    const sheet::Heading& heading = list.reading.table.headings[k];
+    if (!heading.unit.empty()) stated += (stated.empty() ? "" : ", ") + heading.text;
+    words.push_back(fmt::format("{}[{}]={}", list.reading.columns[k].name, other, heading.text));
+  }
+  const std::string found = fmt::format("In {} the points agree within {:.3g} mm: write [{}]",
+                                        degrees ? "radians" : "degrees", *off, other);
+  if (!stated.empty())
+    return fmt::format("{} in the place of [{}] in the headings of {} ({})", found, units.front(),
+                       list.reading.sheet.file, stated);
+  return fmt::format("{}, give: {}", found, way_on(nominal, list, words));
+}
+
+/// Compares the points with the nominal tool points: a list in another order would give a false result.
+void check_distances(NominalTable& result, const ImportTable& points, const ListedRows& list,
+                     const NominalList& nominal, const model::Machine& machine, double tolerance_mm) {
+  const ImportTable& table = result.table;
+  const Eigen::VectorXd off = distances(table, machine);
+  if (off.size() == 0) return;
+  result.rms_mm = std::sqrt(off.squaredNorm() / static_cast<double>(off.size()));
+  Eigen::Index worst = 0;
+  if (off.maxCoeff(&worst) <= kTolerances * tolerance_mm) return;
+  const std::string unit = other_unit(table, points, list, nominal, machine, tolerance_mm);
+  throw text::InputError(
+      {table.file, table.line[static_cast<std::size_t>(worst)]}, "",
+      fmt::format(
+          "this point is {:.3g} mm from its nominal position after the best rigid motion of all points "
+          "({}){}",
+          off[worst],
+          result.names.empty() ? "joined by row number" : "joined by the names in " + result.names,
+          !unit.empty()
+              ? ". " + unit
+              : fmt::format(": check the order and the names of both lists{}, or give a larger --tolerance",
+                            machine.tool_shifts.empty()
+                                ? "; if the points are those of a reflector at an unknown place on the "
+                                  "tool, declare it in the machine file (vernier set MACHINE --reflector)"
+                                : "")));
+}
+
+}  // namespace
+
+NominalTable with_nominal(const ImportTable& points, const NominalList& nominal,
+                          const model::Machine& machine, double tolerance_mm) {
+  ListedRows list = read_nominal_list(nominal, machine,
+                                      [&](const std::string& axis) { return points.find(axis) == nullptr; });
+  if (!list.open.axes.empty()) {
+    const std::string units =
+        asks_for_unit_of_angles(list) ? settle_units(points, list, machine, tolerance_mm) : "";
+    refuse_open_axes(nominal, list, machine, units);
+  }
+  NominalTable result;
+  result.note = list.note;
+  const std::vector<std::size_t> rows = rows_of_points(points, list, result.names);
+  std::vector<std::size_t> used = rows;
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  result.unused = list.rows.size() - used.size();
+  result.table = joined(points, list, rows, machine);
+  check_distances(result, points, list, nominal, machine, tolerance_mm);
   return result;
 }
 
-std::vector<ListedPosition> listed_positions(const std::string& bytes, const std::string& file,
-                                             const model::Machine& machine,
+std::vector<ListedPosition> listed_positions(const NominalList& nominal, const model::Machine& machine,
                                              const std::vector<std::string>& axes) {
-  const List list = read_list(bytes, file, machine);
+  const ListedRows list = read_nominal_list(nominal, machine, [&](const std::string& axis) {
+    return std::find(axes.begin(), axes.end(), axis) != axes.end();
+  });
+  if (!list.open.axes.empty()) refuse_open_axes(nominal, list, machine, "");
   const std::size_t names = column_of_names(list, machine);
   std::vector<ListedPosition> points;
   for (std::size_t i = 0; i < list.rows.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/import/columns/column_map.h"
+#include "tools/import/logs/nominal_columns.h"
 #include "tools/model/machine.h"
 
 namespace vernier::importer {
@@ -20,16 +21,17 @@ struct NominalTable {
                                  // rigid motion; nullopt: too few points, or no x y z
 };
 
-/// Adds the axis positions of a list to the points of an instrument. `bytes`: the list, a spreadsheet with a
-/// heading and a unit for each axis of the machine ("Punkt;X [mm];Y [mm]"). If both have a column with the
-/// names of the points, the rows are joined by name; of a name "A::Vol::P1" the last part is compared.
-/// Otherwise row n belongs to point n, and both must have the same number of rows. `tolerance_mm`: permitted
-/// difference of a distance, machine against nominal machine, mm. The joints of a robot may have their usual
-/// names (A1, J1, q1); without any unit they are in degrees if a value is more than a turn in radians. Throws
-/// InputError with file, line and word for: a missing axis or unit, a name that is missing or occurs twice in
-/// the list, different numbers of rows, and a point that is farther than 3 tolerances from its nominal tool
-/// point after the best rigid motion (a list in another order).
-NominalTable with_nominal(const ImportTable& points, const std::string& bytes, const std::string& file,
+/// Adds the axis positions of a list to the points of an instrument. The list is a spreadsheet with a heading
+/// and a unit for each axis of the machine ("Punkt;X [mm];Y [mm]"). If both have a column with the names of
+/// the points, the rows are joined by name; of a name "A::Vol::P1" the last part is compared. Otherwise row n
+/// belongs to point n, and both must have the same number of rows. `tolerance_mm`: permitted difference of a
+/// distance, machine against nominal machine, mm. The joints of a robot may have their usual names (A1, J1,
+/// q1); without any unit they are in degrees if a value is more than a turn in radians. Throws InputError
+/// with file, line and word for: missing axes or units (all of them, with the assignment of the columns that
+/// probably are the axes), a name that is missing or occurs twice in the list, different numbers of rows, and
+/// a point that is farther than 3 tolerances from its nominal tool point after the best rigid motion (a list
+/// in another order, or joints in another unit of angles, which is then named).
+NominalTable with_nominal(const ImportTable& points, const NominalList& nominal,
                           const model::Machine& machine, double tolerance_mm);
 
 /// A named point of a list of nominal positions.
@@ -39,10 +41,9 @@ struct ListedPosition {
 };
 
 /// Returns the named points of a list of nominal positions (as above) with their positions of the axes `axes`
-/// of the machine. Throws InputError with file, line and word for: a missing axis or unit, a cell that is not
+/// of the machine. Throws InputError with file, line and word for: missing axes or units, a cell that is not
 /// a number, a name that occurs twice, a list without a column of names.
-std::vector<ListedPosition> listed_positions(const std::string& bytes, const std::string& file,
-                                             const model::Machine& machine,
+std::vector<ListedPosition> listed_positions(const NominalList& nominal, const model::Machine& machine,
                                              const std::vector<std::string>& axes);
 
 }  // namespace vernier::importer

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "tools/format/units.h"
-#include "tools/import/logs/nominal_list.h"
 #include "tools/model/chain/chain.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
@@ -120,17 +119,17 @@ NamedPoints stated_points(const std::vector<std::string>& words, const std::vect
 }
 
 void add_listed_points(NamedPoints& points, const std::vector<std::string>& constants,
-                       const std::string& bytes, const std::string& file, const model::Machine& machine) {
+                       const NominalList& nominal, const model::Machine& machine) {
   const auto known = constants_by_name(constants);
   std::vector<std::string> axes;
   for (const MissingAxis& axis : points.axes) axes.push_back(axis.name);
-  for (ListedPosition& one : listed_positions(bytes, file, machine, axes)) {
+  for (ListedPosition& one : listed_positions(nominal, machine, axes)) {
     if (std::any_of(points.points.begin(), points.points.end(),
                     [&](const NamedPoint& point) { return point.name == one.name; }))
       continue;
     points.points.push_back({one.name, std::move(one.values), {}});
   }
-  points.list = file;
+  points.list = nominal.file;
   place_points(points, known, &machine);
 }
 

@@ -5,6 +5,7 @@
 
 #include "tools/import/columns/column_map.h"
 #include "tools/import/distances/named_points.h"
+#include "tools/import/logs/nominal_list.h"
 #include "tools/model/machine.h"
 
 namespace vernier::importer {
@@ -22,6 +23,6 @@ NamedPoints stated_points(const std::vector<std::string>& words, const std::vect
 /// InputError with file, line and word for: a missing axis or unit, a cell that is not a number, a name
 /// twice, a list without names.
 void add_listed_points(NamedPoints& points, const std::vector<std::string>& constants,
-                       const std::string& bytes, const std::string& file, const model::Machine& machine);
+                       const NominalList& nominal, const model::Machine& machine);
 
 }  // namespace vernier::importer

@@ -461,7 +461,8 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   apply_direction_codes(result.sheet, result.table, result.wishes);
   if (result.runs == 0)
     add_stated_directions(result.sheet, result.table, with_columns(words, result.table, result.wishes));
-  for (const std::string& one : words.columns) assign_column(result.wishes, result.table, one);
+  for (const std::string& one : words.columns)
+    assign_column(result.wishes, result.table, one, words.column_option);
   for (const std::string& one : words.deviations) assign_deviation(result.wishes, one);
   for (const std::string& heading : words.fill)
     if (find_heading(result.table, heading) == std::string::npos)

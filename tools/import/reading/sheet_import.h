@@ -19,7 +19,8 @@ struct SheetWords {
   std::string directions;  // "from-order": by the order of the rows, for axes without a column
   std::optional<std::size_t> skip, table;
   std::vector<std::string> columns, deviations, constants, left;
-  std::vector<std::string> fill;  // headings of columns whose empty cells have the value above them
+  std::string column_option = "--column";  // the option of `columns`, for refusals
+  std::vector<std::string> fill;           // headings of columns whose empty cells have the value above them
   bool one_motion = false;
   std::vector<std::string> axes;   // axes of the machine, if the machine is known
   std::vector<std::string> found;  // headings in `columns` that the program found: no unit is stated

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/import/columns/values_beside.h"
 #include "tools/import/words/joint_names.h"
@@ -188,6 +189,15 @@ std::string named_triple(const sheet::SheetTable& table, const std::vector<Sheet
   return options;
 }
 
+/// True if three columns or more are turning axes: the joints of a robot.
+bool angles_are_axes(const std::vector<SheetColumn>& columns, const Guess& guess) {
+  constexpr std::ptrdiff_t kFewestJoints = 3;
+  return std::count_if(columns.begin(), columns.end(), [&](const SheetColumn& one) {
+           return one.use == SheetColumn::Use::kColumn && guess.is_axis(one.name) && !one.unit.empty() &&
+                  is_angle(one.unit);
+         }) >= kFewestJoints;
+}
+
 /// Options that make the columns of a point (X, Y, Z, or one triple such as Tx, Ty, Tz) in a unit of length
 /// the measured point, if most other columns of numbers have no unit or the unit of an angle: poses of a
 /// robot by its joints. Empty for other tables.
@@ -199,7 +209,7 @@ std::string point_of_robot(const sheet::SheetTable& table, const std::vector<She
   std::size_t joints = 0, coordinates = 0;
   std::vector<std::string> names;
   for (const sheet::Heading& heading : table.headings) names.push_back(heading.name);
-  const bool series = !joint_series(names).empty();
+  const bool series = !joint_series(names).empty() || angles_are_axes(columns, guess);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     if (column.use != SheetColumn::Use::kColumn || column.words) continue;
@@ -262,6 +272,28 @@ bool angles_are_joints(const std::vector<SheetColumn>& columns) {
                        }) >= kFewestJoints &&
          std::any_of(columns.begin(), columns.end(),
                      [&](const SheetColumn& one) { return numbers(one) && is_length(one.unit); });
+}
+
+/// Options beside an axis with a name of its own (slide, base_to_turret): no reading is along its name, and a
+/// deviation of the axis would have no column. `reading`: the column of the reading; no value: not known.
+std::string beside_own_axis(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                            const std::vector<SheetColumn>& columns, std::size_t position,
+                            std::optional<std::size_t> reading) {
+  const std::string unit = reading ? columns[*reading].unit : "";
+  const std::string heading = reading ? table.headings[*reading].text : "HEADING";
+  const bool angle = !unit.empty() && is_angle(unit);
+  if (reading && !angle && is_length(columns[position].unit) &&
+      extent_of(sheet, table, *reading).size < kErrorShare * extent_of(sheet, table, position).range)
+    return fmt::format(
+        "--column \"x[mm]=SUM\" with a new column SUM of the table: the position of {} plus \"{}\" (the "
+        "values are small compared with the positions: deviations, and a deviation along {} has no column)",
+        columns[position].name, heading, columns[position].name);
+  return fmt::format("--column \"{}{}={}\" for a measured {}{}{}",
+                     angle ? format::columns::kRotation[0] : format::columns::kPoint[0],
+                     unit.empty() ? "[mm]" : "", heading,
+                     angle ? "rotation (rx, ry or rz)" : "coordinate (x, y or z)",
+                     reading ? "" : ", with a heading of the table in the place of HEADING",
+                     unit.empty() ? "; [mm] is an example: state the unit of the values" : "");
 }
 
 }  // namespace
@@ -354,6 +386,8 @@ std::string assignments_to_try(const sheet::Sheet& sheet, const sheet::SheetTabl
     if (const auto other = deviation_of_same_name(sheet, table, columns))
       return fmt::format("--deviation \"{}{}={}\"", name, table.headings[*other].unit.empty() ? "[um]" : "",
                          table.headings[*other].text);
+  if (axis != columns.end() && !reading_of(name))
+    return beside_own_axis(sheet, table, columns, *at_position, at_reading);
   // Without a heading of positions, the values show which column is the target of another one.
   const auto pair_of = [&](std::size_t target, std::size_t other) {
     return ColumnPair{target, other, columns[target].unit, columns[other].unit};

@@ -170,7 +170,8 @@ std::string joint_series(const std::vector<std::string>& names) {
 }
 
 std::string column_word(const MissingAxis& axis, const FreeColumn& column) {
-  return axis.name + (column.unit.empty() ? axis.rotary ? "[deg]" : "[mm]" : "") + "=" + column.heading;
+  const std::string assumed = !column.assumed.empty() ? column.assumed : axis.rotary ? "deg" : "mm";
+  return axis.name + (column.unit.empty() ? "[" + assumed + "]" : "") + "=" + column.heading;
 }
 
 }  // namespace vernier::importer

@@ -16,8 +16,9 @@ struct MissingAxis {
 std::string axis_names(const std::vector<MissingAxis>& axes);
 
 /// A column of numbers whose heading names no known quantity. `unit`: empty if the heading states none.
+/// `assumed`: then the unit that the values probably have; empty: deg for an angle, mm for a length.
 struct FreeColumn {
-  std::string heading, name, unit;
+  std::string heading, name, unit, assumed = {};
 };
 
 /// Columns that are, or may be, the positions of axes: pairs of an index of an axis and an index of a column.
@@ -44,7 +45,7 @@ JointColumns joint_columns(const std::vector<MissingAxis>& axes, const std::vect
 std::string joint_series(const std::vector<std::string>& names);
 
 /// Returns the word of the option --column that assigns a column to an axis: "J1=q1 [deg]". If the heading
-/// states no unit, the word has the unit of the axis.
+/// states no unit, the word has the unit that is assumed: "J1[deg]=q1".
 std::string column_word(const MissingAxis& axis, const FreeColumn& column);
 
 }  // namespace vernier::importer

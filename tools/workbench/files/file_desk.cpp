@@ -99,7 +99,8 @@ ApiReply FileDesk::sheet(const ApiRequest& request) {
     for (const model::Axis& axis : machine->axes) words.axes.push_back(axis.name);
   }
   words.points = sheet_points(json, words, machine ? &*machine : nullptr, reads);
-  return json_reply(sheet_preview(text::read_file(project_.existing(name).string()), name, words));
+  return json_reply(sheet_preview(text::read_file(project_.existing(name).string()), name, words,
+                                  machine ? &*machine : nullptr));
 }
 
 /// The sheet "safe to run?" of a machine file, before anything is compiled.

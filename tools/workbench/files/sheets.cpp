@@ -8,6 +8,7 @@
 #include "tools/format/columns.h"
 #include "tools/format/csv_file.h"
 #include "tools/import/logs/point_positions.h"
+#include "tools/import/logs/robot_log.h"
 #include "tools/text/error.h"
 #include "tools/text/words.h"
 
@@ -17,6 +18,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kShown = 8;  // rows of a preview
+/// How the log of a robot becomes the positions of the axes of a tracker's points, in the words of the page.
+constexpr const char* kWithPoints =
+    "take in their list, and choose this file in the field \"nominal\" of its panel";
 
 std::string text_or_none(const nlohmann::json& request, const char* key) {
   const auto found = request.find(key);
@@ -56,6 +60,23 @@ Json points_json(const importer::PointDistances& distances) {
   return {{"names", distances.points}, {"axes", axes}, {"missing", distances.missing}};
 }
 
+/// The log of a robot, as the import refuses it, with the columns that a button of the page assigns:
+/// {"robot":
+/// [{column, name, unit}]}.
+void add_robot_log(Json& json, const importer::RobotLog& log, const importer::SheetReading& reading) {
+  Json columns = Json::array();
+  if (!log.point.empty())
+    for (const importer::RobotLog::Column& one : log.columns)
+      columns.push_back({{"column", one.column},
+                         {"name", one.name},
+                         {"unit", one.unit.empty() ? reading.columns[one.column].unit : one.unit}});
+  json["robot"] = columns;
+  const char* const way_on = log.point.empty() ? "" : ", press \"This assignment is right\"";
+  json["message"] = text::InputError({reading.sheet.file, reading.sheet.line[reading.table.heading_row]}, "",
+                                     importer::why_not_read(log, kWithPoints) + way_on)
+                        .what();
+}
+
 /// True if one of the columns is a reading of the measurement format. Without one the headings are those of a
 /// spreadsheet, whatever their form: joint_a1 [deg],Tx [mm].
 bool has_reading(const std::vector<format::CsvColumn>& columns) {
@@ -89,7 +110,8 @@ bool begins_as_measurement(const std::string& text) {
   return false;
 }
 
-Json sheet_preview(const std::string& bytes, const std::string& file, const importer::SheetWords& words) {
+Json sheet_preview(const std::string& bytes, const std::string& file, const importer::SheetWords& words,
+                   const model::Machine* machine) {
   const importer::SheetReading reading = importer::read_as_sheet(bytes, file, words);
   const sheet::Sheet& sheet = reading.sheet;
   std::string how = importer::how_read(sheet);
@@ -122,6 +144,8 @@ Json sheet_preview(const std::string& bytes, const std::string& file, const impo
     json["n_rows"] = 0;
     json["message"] = error.what();
   }
+  if (machine != nullptr && !reading.distances)
+    if (const auto log = importer::robot_log(*machine, reading)) add_robot_log(json, *log, reading);
   return json;
 }
 
@@ -133,7 +157,10 @@ importer::NamedPoints sheet_points(const nlohmann::json& request, const importer
   const std::string list = text_or_none(request, "nominal");
   if (!list.empty() && machine == nullptr)
     throw text::InputError("choose a machine first: the list of positions has a column for each of its axes");
-  if (!list.empty()) importer::add_listed_points(points, words.constants, reads(list), list, *machine);
+  if (!list.empty())
+    importer::add_listed_points(
+        points, words.constants,
+        {reads(list), list, list_or_none(request, "nominal-column"), "--nominal-column"}, *machine);
   return points;
 }
 

@@ -17,10 +17,12 @@ bool begins_as_measurement(const std::string& text);
 /// tables_beside: names of the other visible sheets with tables, separator, decimal, heading_line, columns
 /// (columns_json), rows: the first as cells, csv: the first lines of the measurement file, n_rows, message:
 /// reason why it is not a measurement yet}. A table of distances between named points also has points:
-/// {names, axes: [{name, unit}], missing: names without a position}. Throws InputError if the file does not
-/// contain a table.
+/// {names, axes: [{name, unit}], missing: names without a position}. The log of a robot (robot_log.h) also
+/// has robot: [{column: index, name, unit}]. `machine`: the chosen machine; null: none. Throws InputError if
+/// the file does not contain a table.
 nlohmann::ordered_json sheet_preview(const std::string& bytes, const std::string& file,
-                                     const importer::SheetWords& words);
+                                     const importer::SheetWords& words,
+                                     const model::Machine* machine = nullptr);
 
 /// Returns the options in a request, with the names of the options of `vernier import table`: separator,
 /// decimal, comment, sheet, unit (texts), skip (number), column, deviation, leave, set (lists). Throws

@@ -29,12 +29,13 @@ constexpr Allowed kAllowed[] = {
      "output measurements"},
     {"import table", false, true,
      "file separator decimal skip table sheet unit sign column deviation leave set fill one-motion "
-     "directions point nominal tolerance "
+     "directions point nominal nominal-column tolerance "
      "check-every machine output! save-profile"},
     {"import ballbar", false, true, "files repair-time-base output"},
     {"import ballbar-trace", false, true, "files radius plane length feed output"},
     {"import tracker", false, true,
-     "file map separator decimal skip header column set check-every machine nominal output"},
+     "file map separator decimal skip header column set check-every machine nominal nominal-column tolerance "
+     "output"},
     {"import probe", false, true,
      "file map separator decimal skip header column set check-every radius output"},
     {"import laser", false, true, "file output"},
