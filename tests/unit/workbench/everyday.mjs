@@ -486,8 +486,8 @@ async function again(page) {
 
 /** The description of a robot becomes a machine file, and a description with its joints comes out. */
 async function robot(page) {
-  const joint = (k, parent, child, axis) =>
-    `<joint name="q${k}" type="revolute"><parent link="${parent}"/><child link="${child}"/><origin xyz="0 0 0.4" rpy="0 0 0"/><axis xyz="${axis}"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>`;
+  const joint = (k, parent, child, axis, name = `q${k}`) =>
+    `<joint name="${name}" type="revolute"><parent link="${parent}"/><child link="${child}"/><origin xyz="0 0 0.4" rpy="0 0 0"/><axis xyz="${axis}"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>`;
   const axes = ['0 0 1', '0 1 0', '0 1 0', '0 0 1', '0 1 0', '0 0 1'];
   const links = axes.map((_, k) => `<link name="l${k + 1}"/>`).join('');
   await page.drop([
@@ -514,6 +514,11 @@ async function robot(page) {
   await pointsAndPositions(page);
   await logWithoutUnits(page);
   await noReadingsYet(page);
+  await jointsOfTheirOwn(
+    page,
+    (names) =>
+      `<robot name="own"><link name="l0"/>${links}${axes.map((one, k) => joint(k + 1, `l${k}`, `l${k + 1}`, one, names[k])).join('')}</robot>`,
+  );
   await severalEnds(
     page,
     (ends) =>
@@ -526,19 +531,87 @@ const turned = (axis, angle, [x, y, z]) => {
   return axis === 'z' ? [c * x - s * y, s * x + c * y, z] : [c * x + s * z, y, c * z - s * x];
 };
 
-/** Poses of the arm of this journey, whose joints turn about z y y z y z, with a reflector that no file names. */
+/** Joints and point, in deg and mm, of poses of the arm of this journey, whose joints turn about z y y z y z. */
+const posesOf = (place) =>
+  Array.from({ length: 40 }, (_, i) => {
+    const angles = Array.from({ length: 6 }, (__, k) => ((i * (37 + 11 * k) + k * 23) % 150) - 75);
+    const point = [...'zyyzyz'].reduceRight(
+      (at, axis, k) => turned(axis, (angles[k] * Math.PI) / 180, at).map((one, j) => one + (j === 2 ? 400 : 0)),
+      place,
+    );
+    return { angles, point };
+  });
+
+const kReflectorPlace = [30, -20, 118];
+
+/** The same as a measurement file, with a reflector that no file names. */
 const reflectorPoses = () =>
-  `${['q1', 'q2', 'q3', 'q4', 'q5', 'q6'].map((one) => `${one}[deg],`).join('')}x[mm],y[mm],z[mm],u[um]\n${Array.from(
-    { length: 40 },
-    (_, i) => {
-      const angles = Array.from({ length: 6 }, (__, k) => ((i * (37 + 11 * k) + k * 23) % 150) - 75);
-      const point = [...'zyyzyz'].reduceRight(
-        (at, axis, k) => turned(axis, (angles[k] * Math.PI) / 180, at).map((one, j) => one + (j === 2 ? 400 : 0)),
-        [30, -20, 118],
-      );
-      return [...angles, ...point.map((one, j) => (one + 0.01 * Math.sin(7 * i + 3 * j)).toFixed(4)), 10].join(',');
-    },
-  ).join('\n')}\n`;
+  `${['q1', 'q2', 'q3', 'q4', 'q5', 'q6'].map((one) => `${one}[deg],`).join('')}x[mm],y[mm],z[mm],u[um]\n${posesOf(kReflectorPlace)
+    .map(({ angles, point }, i) => [...angles, ...point.map((one, j) => (one + 0.01 * Math.sin(7 * i + 3 * j)).toFixed(4)), 10].join(','))
+    .join('\n')}\n`;
+
+/**
+ * A robot whose joints have names of their own, the log of its control (A1 to A6, and the position that the control computed), and
+ * a tracker's list without headings: every way on is a button, and no file is edited.
+ */
+async function jointsOfTheirOwn(page, arm) {
+  const kJoints = ['turret', 'shoulder', 'elbow', 'forearm', 'wrist', 'flange'];
+  const control = posesOf([0, 0, 0]),
+    reflector = posesOf(kReflectorPlace);
+  const log = (value) =>
+    `Name;A1;A2;A3;A4;A5;A6;X;Y;Z\n${control
+      .map(({ angles, point }, i) => [`P${i + 1}`, ...angles.map(value), ...point.map((one) => one.toFixed(3))].join(';'))
+      .join('\n')}\n`;
+  await view(page, 'project');
+  await page.drop([{ name: 'own.urdf', text: arm(kJoints) }]);
+  await page.click('#drop-error [data-answer=reflector]');
+  await chosen(page, 'own.xml');
+  await page.drop([{ name: 'control.csv', text: log((one) => one) }]);
+  const ofLog = '[data-of="control.csv"]';
+  await words(page, `${ofLog} #sheet-message`, 'the control probably computed it from the joints, and it is no measurement');
+  assert.deepEqual(await page.evaluate(`[...document.querySelectorAll('${ofLog} #sheet-robot li')].map((one) => one.textContent)`), [
+    ...kJoints.map((one, k) => `${one}[deg]: "A${k + 1}"`),
+    'x[mm]: "X"',
+    'y[mm]: "Y"',
+    'z[mm]: "Z"',
+  ]);
+  await picture(page, 'robot_log', `${ofLog} .panel`);
+  await page.click(`${ofLog} #sheet-assignment-is-right`);
+  await page.until(
+    `document.querySelector('${ofLog} .source')?.textContent.includes('turret[deg],shoulder[deg]')`,
+    'the joints in the table',
+  );
+  const list = reflector.map(({ point }) => point.map((one) => one.toFixed(4)).join('\t')).join('\n');
+  await page.drop([{ name: 'list.txt', text: `${list}\n` }]);
+  const own = '[data-of="list.txt"]';
+  await words(page, `${own} #proposed-unit`, 'The list has no headings: x, y and z in this order, in mm, are proposed');
+  assert.deepEqual(await page.evaluate(`[...document.querySelectorAll('${own} [aria-label^="name of column"]')].map((one) => one.value)`), [
+    'x',
+    'y',
+    'z',
+  ]);
+  await page.type(`${own} [data-option=nominal]`, 'control.csv');
+  await page.click(`${own} #do-import`);
+  await words(page, `${own} .error`, 'the joints are in [deg]');
+  await words(page, `${own} li:last-of-type`, 'flange[deg]: "A6"');
+  assert.ok(!/vernier import|--[a-z]/.test(await text(page, `${own} .error`)), await text(page, `${own} .error`));
+  await picture(page, 'robot_nominal', `${own} .error`);
+  await page.click(`${own} #nominal-is-right`);
+  await measured(page, 'list_read.csv');
+  assert.ok(readFileSync(join(folder, 'list_read.csv'), 'utf8').startsWith('turret[deg],shoulder[deg],'));
+  // Joints in radians under a statement of degrees: the unit is named, and taken by the same button.
+  await page.drop([{ name: 'radians.csv', text: log((one) => ((one * Math.PI) / 180).toFixed(6)) }]);
+  await page.drop([{ name: 'list2.txt', text: `${list}\n` }]);
+  const second = '[data-of="list2.txt"]';
+  await words(page, `${second} #where-it-stood`, 'Where did the machine stand at each point?');
+  await page.type(`${second} [data-option=nominal]`, 'radians.csv');
+  await page.type(`${second} [data-option=nominal-column]`, kJoints.map((one, k) => `${one}[deg]=A${k + 1}`).join('; '));
+  await page.click(`${second} #do-import`);
+  await words(page, `${second} .error`, 'write [rad], press "This assignment is right"');
+  await page.click(`${second} #nominal-is-right`);
+  await measured(page, 'list2_read.csv');
+  assert.ok(readFileSync(join(folder, 'list2_read.csv'), 'utf8').startsWith('turret[rad],shoulder[rad],'));
+}
 
 /** The points of a tracker and the positions of the joints in two files: the page knows the columns, and asks for the other file. */
 async function pointsAndPositions(page) {
@@ -602,10 +675,10 @@ async function logWithoutUnits(page) {
   ]);
   const own = '[data-of="tracker.txt"]';
   await words(page, `${own} #proposed-unit`, 'mm is proposed');
+  await page.type(`${own} [data-option=nominal]`, 'log.txt');
   // How the text is read can be corrected, as on the command line; the preview follows.
   await page.choose(`${own} [data-option=decimal]`, 'comma');
   await page.until(`document.querySelector('${own} .source')?.textContent.includes('point,x[mm],y[mm],z[mm]')`, 'the preview');
-  await page.type(`${own} [data-option=nominal]`, 'log.txt');
   await page.click(`${own} #do-import`);
   await measured(page, 'tracker_read.csv');
   await words(
@@ -757,9 +830,13 @@ async function jointsOfOtherNames(page) {
     .replace(';x;y;z', ';X;Y;Z');
   await page.drop([{ name: 'log.csv', text: log }]);
   await words(page, '#sheet-message', '');
-  await page.click('#sheet-by-machine');
-  await page.until("document.getElementById('sheet-assignment-is-right') !== null", 'the assignment of the log');
+  await words(page, '#sheet-robot', 'x[mm]: "X"');
   await page.click('#sheet-assignment-is-right');
+  await page.until(
+    "!document.getElementById('sheet-robot') && !document.getElementById('do-import')?.disabled",
+    'the assignment of the log',
+  );
+  await page.click('#do-import');
   await measured(page, 'log_read.csv');
   await page.until("document.body.dataset.subject === 'yes'", 'the rows');
   assert.ok(readings('log_read.csv').startsWith(`${named}[deg],`), readings('log_read.csv'));

@@ -10,11 +10,26 @@ export const kNames =
 const kByHand =
   'The program does not find the columns of the axes. Press "Choose the columns by hand": there, write the name of an axis in the place of the name of its column.';
 
-/** The assignment of columns to axes that a refusal proposes, as words of the option column. */
-const proposed = (message) =>
-  [...message.matchAll(/--column (?:"([^"]+)"|'([^']+)'|(\S+))/g)]
-    .map(([, ...words]) => words.find((one) => one !== undefined))
-    .filter((one) => one.includes('=') && !one.includes('HEADING'));
+/** The assignment of columns that a refusal proposes, as words of an option; empty: it proposes none, or not all of it. */
+export const wordsProposed = (message, option = 'column') => {
+  const words = [...message.matchAll(new RegExp(`--${option} (?:"([^"]+)"|'([^']+)'|(\\S+))`, 'g'))]
+    .map(([, ...one]) => one.find((word) => word !== undefined))
+    .filter((one) => one.includes('='));
+  return words.some((one) => one.includes('HEADING')) ? [] : words;
+};
+
+/** An assignment to confirm: [name, heading], and the button that takes it. */
+export const confirmed = (pairs, take, id) => [
+  el(
+    'ul',
+    {},
+    pairs.map(([name, heading]) => el('li', {}, `${name}: "${heading}"`)),
+  ),
+  button('This assignment is right', take, { id }),
+];
+
+/** The words of an option as [name, heading]. */
+export const pairsOf = (words) => words.map((one) => [one.replace(/=.*$/, ''), one.replace(/^[^=]*=/, '')]);
 
 /**
  * A button that writes a new measurement file whose joints have the names of the machine. `done(output)`: called with its name.
@@ -29,7 +44,7 @@ export function byMachine(file, { error, byHand = null, done, prefix = '' }) {
         await run({ command: 'import table', file, ...(column.length ? { column } : {}), machine: store.machine, output });
       } catch (why) {
         if (!(why instanceof Refused) || column.length) throw why;
-        doubt(proposed(why.message));
+        doubt(wordsProposed(why.message));
         return;
       }
       await done(output);
@@ -43,12 +58,7 @@ export function byMachine(file, { error, byHand = null, done, prefix = '' }) {
     error.replaceChildren();
     answers.replaceChildren(
       el('p', { class: 'note', role: 'status' }, 'As many columns may be the axes, in the order of the machine file:'),
-      el(
-        'ul',
-        {},
-        columns.map((one) => el('li', {}, `${one.replace(/=.*$/, '')}: "${one.replace(/^[^=]*=/, '')}"`)),
-      ),
-      button('This assignment is right', () => read(columns), { id: `${prefix}assignment-is-right` }),
+      ...confirmed(pairsOf(columns), () => read(columns), `${prefix}assignment-is-right`),
     );
   };
   const byName = button('Read the columns as the axes of the machine', () => read([]), { id: `${prefix}by-machine` });

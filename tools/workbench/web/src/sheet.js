@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { choice, el } from '../../../report/web/src/dom.js';
-import { freeName, getJson, postJson, run } from './api.js';
-import { byMachine, kNames } from './joints.js';
+import { freeName, getJson, postJson, Refused, run } from './api.js';
+import { byMachine, confirmed, kNames, pairsOf, wordsProposed } from './joints.js';
 import { optionFields } from './options.js';
-import { button, gate, guarded, pageWords, panel } from './parts.js';
+import { button, gate, guarded, pageWords, panel, showError } from './parts.js';
 import { pointFields, pointsOnPage, pointWords } from './points.js';
 import { choose } from './rows.js';
 import { declareReflector, kReflector } from './reflector.js';
@@ -24,12 +24,26 @@ const kUsualUnit = 'mm';
 /** Words above the names of points. */
 const kPointName = /^(name|point|punkt|punktname|id)$/i;
 
+/** The columns of points without headings, in the order x, y, z; before them their names, if the first column has words. */
+function pointsWithoutHeadings(preview) {
+  const isNumber = (cell) => cell.trim() !== '' && Number.isFinite(Number(cell.trim().replace(',', '.')));
+  const first = preview.rows.every((row) => isNumber(row[0])) ? 0 : 1;
+  const right = preview.columns.length === first + 3 && preview.rows.every((row) => row.slice(first).every(isNumber));
+  if (!right) return [];
+  return [
+    ...['x', 'y', 'z'].map((name, k) => [first + k, { use: 'column', name, unit: kUsualUnit }]),
+    ...(first ? [[0, { use: 'column', name: 'point', unit: '' }]] : []),
+  ];
+}
+
 /**
  * The columns of points without positions of the axes, as a tracker writes them (Name, X, Y, Z) for a machine without axes of
  * these names: [[column, {use, name, unit}]]; empty: not such a table.
  */
 function pointsOfATracker(preview, axes) {
   const named = (name) => axes.some((axis) => axis.name.toLowerCase() === name.toLowerCase());
+  if (axes.length && !preview.workbook && preview.heading_line == null && !['x', 'y', 'z'].some(named))
+    return pointsWithoutHeadings(preview);
   const xyz = preview.columns.map((one, k) => [k, one]).filter(([, one]) => /^[xyz]$/i.test(one.name));
   const rest = preview.columns.length - xyz.length;
   if (!axes.length || preview.workbook || xyz.length !== 3 || rest > 2 || preview.columns.some((one) => named(one.name))) return [];
@@ -56,6 +70,19 @@ const kWhereItStood =
 /** What the table of columns and the preview say; all other options of the import have fields. */
 const kInTable = ['file', 'output', 'column', 'deviation', 'leave', 'sheet', 'machine', 'point'];
 const kOfPreview = [...kInTable, 'header'];
+/** A refusal that ends with a call for the terminal: the words before the call. */
+const beforeTheCall = (message) =>
+  message
+    .replace(
+      /: if the columns are x, y and z of the points, give: .*$/s,
+      ': state them in the table. If nothing else was measured, give each other column a name of your own.',
+    )
+    .replace(/, give: vernier import .*$/s, ', press "This assignment is right".')
+    .replace(
+      / with a heading of the list in the place of HEADING (\(.*\)), and the unit of the values: vernier import .*$/s,
+      ' $1, in the field "nominal column", such as joint_1[deg]=A1; joint_2[deg]=A2',
+    );
+
 /** How the text is read: with another answer of these the preview is another. */
 const kOfText = ['separator', 'decimal', 'skip', 'comment'];
 const ofText = (values) => Object.fromEntries(Object.entries(values).filter(([name]) => kOfText.includes(name)));
@@ -210,9 +237,26 @@ export async function importSheet(box, name, handOver, asks = false) {
         ),
       );
   };
+  /** Columns of the list of nominal positions that probably are the axes: the button writes them into the field, and goes on. */
+  const offerColumns = (preview, assigned) => {
+    if (!assigned.length) return;
+    error.append(
+      ...confirmed(
+        pairsOf(assigned),
+        () => {
+          const field = forms[kind].elements.map((one) => one.querySelector('[data-option="nominal-column"]')).find(Boolean);
+          field.value = assigned.join('; ');
+          return doImport(preview);
+        },
+        'nominal-is-right',
+      ),
+    );
+    error.scrollIntoView({ block: 'nearest' });
+  };
   const doImport = async (preview) => {
-    await importNow(preview);
+    const assigned = await importNow(preview);
     offerReflector(preview);
+    offerColumns(preview, assigned ?? []);
   };
   const importNow = (preview) =>
     guarded(error, async () => {
@@ -223,7 +267,16 @@ export async function importSheet(box, name, handOver, asks = false) {
       const values = { ...forms[kind].values(), ...(kind === 'table' ? {} : ofPreview(preview)) };
       // The list of nominal positions, and the position of a point, have the axes of the machine.
       const machine = (values.nominal || options.point) && store.machine ? { machine: store.machine } : {};
-      const { text } = await run({ command: `import ${kind}`, file: name, ...options, ...values, ...machine, output });
+      let text = '';
+      try {
+        ({ text } = await run({ command: `import ${kind}`, file: name, ...options, ...values, ...machine, output }));
+      } catch (why) {
+        if (!(why instanceof Refused)) throw why;
+        const assigned = wordsProposed(why.message, 'nominal-column');
+        why.message = beforeTheCall(why.message);
+        await showError(error, why);
+        return assigned;
+      }
       // What a tracker's import assumed and how it joined the points: the table of columns has said all of the others.
       const said_by = kind === 'table' ? [] : text.split('\n').filter((line) => line.trim() && !line.startsWith(`${output}: `));
       box.replaceChildren(
@@ -237,6 +290,7 @@ export async function importSheet(box, name, handOver, asks = false) {
       );
       read_into.set(preview.sheet, output);
       await handOver([...read_into.values()]);
+      return [];
     });
   /** A button for each sheet with a table that was not imported yet: the command line reads each by a call of its own. */
   const others = (preview) => {
@@ -291,13 +345,29 @@ export async function importSheet(box, name, handOver, asks = false) {
   /** Where no column has the name of an axis of the machine: the program compares the names itself. */
   const byAxes = (now) => {
     const isAxis = ({ name: column }) => axes.some((axis) => axis.name === column);
-    if (!now.message || kind !== 'table' || !axes.length || now.columns.some(isAxis)) return null;
+    if (!now.message || now.robot || kind !== 'table' || !axes.length || now.columns.some(isAxis)) return null;
     const done = async (output) => {
       box.replaceChildren(panel(null, el('p', { id: 'imported' }, `${name}: read into `, el('strong', {}, output), '.')));
       await handOver([output]);
     };
     return el('div', {}, el('p', { class: 'note' }, kNames), byMachine(name, { error, done, prefix: 'sheet-' }));
   };
+  /** The log of a robot: its joints in the order of the axes, and its point. */
+  const ofRobot = (now) =>
+    now.robot?.length && kind === 'table'
+      ? el(
+          'div',
+          { id: 'sheet-robot' },
+          ...confirmed(
+            now.robot.map((one) => [withUnit(one), now.columns[one.column].heading]),
+            () => {
+              for (const { column, name: meaning, unit } of now.robot) said.set(column, { use: 'column', name: meaning, unit });
+              return draw();
+            },
+            'sheet-assignment-is-right',
+          ),
+        )
+      : null;
   const later = () => button('Not now', () => box.replaceChildren(), { class: 'quiet' });
   /** The button of an import that cannot be done yet, with the reason. */
   const notYet = () => {
@@ -342,6 +412,7 @@ export async function importSheet(box, name, handOver, asks = false) {
         now.message ? el('div', { class: 'controls', id: 'sheet-confirmations' }, confirmations(now)) : null,
         now.points && kind === 'table' ? pointFields(now.points, points, () => draw()) : null,
         now.points ? null : byAxes(now),
+        ofRobot(now),
         kind === 'tracker' && axes.length && !now.columns.some((one) => axes.some((axis) => axis.name === one.name))
           ? el('p', { class: 'note', id: 'where-it-stood' }, kWhereItStood)
           : null,
@@ -349,7 +420,9 @@ export async function importSheet(box, name, handOver, asks = false) {
           ? el(
               'p',
               { class: 'note', id: 'proposed-unit' },
-              `The headings of the point have no unit: ${kUsualUnit} is proposed. Correct it if it is another.`,
+              now.heading_line == null
+                ? `The list has no headings: x, y and z in this order, in ${kUsualUnit}, are proposed. Correct them if they are others.`
+                : `The headings of the point have no unit: ${kUsualUnit} is proposed. Correct it if it is another.`,
             )
           : null,
         el(
