@@ -149,6 +149,20 @@ TEST(Displacement, RoundingStaysBelowItsBound) {
   }
 }
 
+// The first sample meets nothing but the factor k of the symmetric filter.
+TEST(Displacement, TheFactorOfTheSymmetricFilterIsThatOfItsExactFrequency) {
+  for (const std::int64_t exact_mHz : {0, 5'000, 12'500, 20'000, 25'000}) {
+    const DisplacementScale scale{100'000'000, 100'000, 1500, exact_mHz};  // 10 um a sample
+    Displacement filter;
+    ASSERT_TRUE(filter.start(scale)) << exact_mHz;
+    InDouble reference(scale);
+    const double full = Displacement::kLimit * reference.nm;
+    EXPECT_NEAR(filter.step(Displacement::kLimit).count, reference.step(Displacement::kLimit),
+                std::ldexp(full, -20))
+        << exact_mHz;
+  }
+}
+
 // Samples of full scale, each with the sign that its response has at the end: no other samples give a larger
 // displacement. The corner is the lowest that start() accepts.
 TEST(Displacement, LargestDisplacementOfTheLowestCornerFitsItsWidths) {
