@@ -414,6 +414,18 @@ TEST(PrinterBedShape, OfAPlaneIsTheRegionOfTheTouchedPoints) {
   EXPECT_THROW(mesh_of_touches(machine, text + "40,5,0,-30,20,bed\n50,5,0,-30,20,bed\n"), text::InputError);
 }
 
+// The bed is 0.25 mm above the zero of Z, and 0.05 mm more at large X: so are the heights.
+TEST(PrinterBedShape, KeepsTheZeroOfTheTouches) {
+  std::ostringstream text;
+  text << "X[mm],Y[mm],Z[mm],probeX[mm],probeY[mm],on\n";
+  for (int x = 20; x <= 180; x += 40)
+    for (int y = 30; y <= 190; y += 40)
+      text << x << ',' << y << ',' << 0.25 + 0.05 * (x - 20) / 160 << ",0,0,bed\n";
+  const KlipperFile file = mesh_of_touches(probed_machine(0, 0), text.str());
+  EXPECT_NEAR(file.points.front().front(), 0.25, 1e-5);
+  EXPECT_NEAR(file.points.back().back(), 0.30, 1e-5);
+}
+
 TEST(PrinterBed, IsTheNamedPlaneOrTheOnlyOne) {
   const auto said = [](const std::string& planes, const std::string& name) {
     const Machine machine = over_a_bed(planes);

@@ -265,6 +265,11 @@ void print_errors(const PrinterArguments& arguments, const PrinterModel& model,
   if (bed)
     fmt::print(out, "the heights follow the {} \"{}\", X {:g} to {:g} mm, Y {:g} to {:g} mm\n",
                bed->shape ? "bed" : "plane", bed->name, bed->low[0], bed->high[0], bed->low[1], bed->high[1]);
+  if (bed && bed->shape)
+    fmt::print(out, "the zero of the heights is that of the touches: the offset of Z of the printer stays\n");
+  else if (bed)
+    fmt::print(out,
+               "the heights are 0 in the middle of the mesh: set the offset of Z of the printer again\n");
   if (touches)
     fmt::print(
         out,

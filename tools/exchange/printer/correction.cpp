@@ -207,7 +207,7 @@ void fit_lost_motion(PrinterCorrection& correction, const model::Machine& machin
   }
 }
 
-/// Heights at the lowest Z, beside the skew. Z is 0 in the middle: homing sets the offset.
+/// Heights at the lowest Z, beside the skew. They are 0 in the middle: homing sets the offset.
 HeightMesh mesh_of(const model::Machine& machine, const ThreeAxes& axes, std::size_t count,
                    const model::States& at, const std::optional<Bed>& bed) {
   const Matrix3Xd points = grid(axes, {count, count, 1});
@@ -389,32 +389,61 @@ bool heights_are_measured(const model::Machine& machine, const ThreeAxes& axes, 
   return std::sqrt(variance.sum()) <= kMostShare * heights.norm();
 }
 
-std::optional<TouchResidual> touch_residual(const model::Machine& machine, const ThreeAxes& axes,
-                                            const PrinterCorrection& correction, const model::States& at,
-                                            const Bed& bed) {
-  if (!correction.has_mesh()) return std::nullopt;
-  const HeightMesh& mesh = correction.mesh;
+namespace {
+
+/// Heights of the touches without and with the mesh, as the firmware sees them (with straight axes), mm.
+struct TouchHeights {
+  bool of_nozzle = false;
+  double rise = 1;  // of the point with the command of Z; -1: a bed that moves along Z itself
+  std::vector<double> before, after;
+};
+
+/// The heights of the nozzle's touches in the region of the mesh, if there are three or more, otherwise of
+/// the probe's.
+std::optional<TouchHeights> heights_at_touches(const model::Machine& machine, const ThreeAxes& axes,
+                                               const HeightMesh& mesh, const model::States& at,
+                                               const Bed& bed) {
   const Eigen::Vector3d middle((mesh.x_low + mesh.x_high) / 2, (mesh.y_low + mesh.y_high) / 2, axes.low[2]);
   const Matrix3Xd ends = nominal_points(
       machine, axes,
       Matrix3Xd{{middle.x(), middle.x()}, {middle.y(), middle.y()}, {middle.z(), middle.z() + 1}}, at);
-  const double rise = ends(2, 1) - ends(2, 0);  // -1: a bed that moves along Z itself
   constexpr std::size_t kFew = 3;
   for (const bool of_nozzle : {true, false}) {
-    std::vector<double> before, after;
+    TouchHeights heights{of_nozzle, ends(2, 1) - ends(2, 0), {}, {}};
+    const double at_zero = ends(2, 0) - heights.rise * middle.z();  // height where Z is 0
     for (const BedTouch& touch : bed.touches) {
       const double x = touch.nominal.x(), y = touch.nominal.y();
       constexpr double kEdge_mm = 1e-3;
       const bool inside = x > mesh.x_low - kEdge_mm && x < mesh.x_high + kEdge_mm &&
                           y > mesh.y_low - kEdge_mm && y < mesh.y_high + kEdge_mm;
       if (!inside || touch.of_nozzle() != of_nozzle) continue;
-      before.push_back(touch.nominal.z());
-      after.push_back(touch.nominal.z() - rise * mesh.at(x, y));
+      heights.before.push_back(touch.nominal.z() - at_zero);
+      heights.after.push_back(heights.before.back() - heights.rise * mesh.at(x, y));
     }
-    if (before.size() < kFew) continue;
-    return TouchResidual{before.size(), of_nozzle, rms_beside_mean_um(before), rms_beside_mean_um(after)};
+    if (heights.before.size() >= kFew) return heights;
   }
   return std::nullopt;
+}
+
+/// Gives the mesh the zero of the touches: with it, the offset of Z of the printer stays what it is.
+void keep_zero_of_touches(HeightMesh& mesh, const model::Machine& machine, const ThreeAxes& axes,
+                          const model::States& at, const Bed& bed) {
+  const auto heights = heights_at_touches(machine, axes, mesh, at, bed);
+  if (!heights || heights->rise == 0) return;
+  const Eigen::Map<const VectorXd> left(heights->after.data(), static_cast<Index>(heights->after.size()));
+  mesh.z.array() += left.mean() / heights->rise;
+}
+
+}  // namespace
+
+std::optional<TouchResidual> touch_residual(const model::Machine& machine, const ThreeAxes& axes,
+                                            const PrinterCorrection& correction, const model::States& at,
+                                            const Bed& bed) {
+  if (!correction.has_mesh()) return std::nullopt;
+  const auto heights = heights_at_touches(machine, axes, correction.mesh, at, bed);
+  if (!heights) return std::nullopt;
+  return TouchResidual{heights->before.size(), heights->of_nozzle, rms_beside_mean_um(heights->before),
+                       rms_beside_mean_um(heights->after)};
 }
 
 PrinterCorrection printer_correction(const model::Machine& machine, const ThreeAxes& axes,
@@ -431,6 +460,7 @@ PrinterCorrection printer_correction(const model::Machine& machine, const ThreeA
     correction.mesh = mesh_of(machine, over, count, at, bed);
     if (between_um(machine, over, correction.mesh, at, bed) <= tolerance_um) break;
   }
+  if (bed && bed->shape) keep_zero_of_touches(correction.mesh, machine, axes, at, *bed);
   return correction;
 }
 

@@ -107,9 +107,10 @@ void give_shape(Bed& bed, const model::Machine& machine, const ThreeAxes& axes,
 /// about Z is not corrected, because it rotates the whole part. The lost motion of an axis is the mean of its
 /// reversal error over the working volume, if its whole standard uncertainty is at most half of it, and if
 /// the axis falls short (a firmware does not shorten a move). If a bed is given, the
-/// heights follow its slope, and the mesh covers the region in which the bed was touched. `straight`: the
-/// machine of the skews and steps, if it is not the machine of the heights. Its skews and steps then must
-/// meet the same limit with their whole standard uncertainty.
+/// heights follow its slope, and the mesh covers the region in which the bed was touched. The mesh is 0 in
+/// its middle; with the shape of the bed, its zero is that of the touches. `straight`: the machine of the
+/// skews and steps, if it is not the machine of the heights. Its skews and steps then must meet the same
+/// limit with their whole standard uncertainty.
 PrinterCorrection printer_correction(const model::Machine& machine, const ThreeAxes& axes,
                                      const PrinterFeatures& features, const model::States& at,
                                      double tolerance_um, const std::optional<Bed>& bed = {},
