@@ -287,7 +287,16 @@ std::optional<model::FitRecord::Noise> kept_noise(const NoiseModel& noise, const
                                  noise.drifts};
 }
 
-/// Returns the measured ranges of axes, inputs and the time.
+/// True if a term of the machine follows the order of the rows.
+bool counts_visits(const model::Machine& machine) {
+  for (const auto* branch : {&machine.tool, &machine.workpiece})
+    for (const model::Transform& transform : *branch)
+      for (std::size_t dof = 0; dof < transform.dof_count(); ++dof)
+        if (model::has_symbol(*transform.dof[dof], {model::SymbolKind::kVisit, 0})) return true;
+  return false;
+}
+
+/// Returns the measured ranges of axes, inputs and the time, and of the visits if a term follows them.
 std::vector<model::FitRecord::Range> measured_ranges(const model::Machine& machine,
                                                      const model::Measurement& rows) {
   std::vector<std::size_t> fitted;
@@ -306,6 +315,9 @@ std::vector<model::FitRecord::Range> measured_ranges(const model::Machine& machi
   const model::Column time = rows.states.time(fitted);
   if (time.maxCoeff() > time.minCoeff())
     list.push_back({format::columns::kTime, time.minCoeff(), time.maxCoeff()});
+  const model::Column visit = rows.states.visit(fitted);
+  if (counts_visits(machine) && visit.maxCoeff() > visit.minCoeff())
+    list.push_back({format::columns::kVisit, visit.minCoeff(), visit.maxCoeff()});
   return list;
 }
 

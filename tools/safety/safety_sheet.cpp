@@ -30,7 +30,7 @@ namespace {
 struct RuleText {
   const char *name, *unit, *reason;
   double limit;
-  const char* remedy = "";  // what the user can do instead of accepting the rule
+  const char* remedy = "";  // what the user can do instead of accepting the rule, whatever the culprit is
 };
 
 /// Limits, each with its reason. Ratios have no unit.
@@ -103,8 +103,8 @@ class Judge {
   }
 
  private:
-  void add(SafetyRule rule, std::optional<double> value, std::string culprit) {
-    sheet_.judge(rule, value, std::move(culprit), accepted_);
+  void add(SafetyRule rule, std::optional<double> value, std::string culprit, std::string remedy = {}) {
+    sheet_.judge(rule, value, std::move(culprit), accepted_, std::move(remedy));
   }
 
   /// The source that moves the tool most, of those that the machine has.
@@ -270,7 +270,7 @@ class Judge {
             {overhang(measured, *item.min, *item.max), region("input", measured, *item.min, *item.max)});
       }
     }
-    add_outside_time(inputs);
+    add_outside_clocks(inputs);
     add_outside(SafetyRule::kMeasuredRange, std::move(axes));
     add_outside(SafetyRule::kInputRange, std::move(inputs));
   }
@@ -279,22 +279,46 @@ class Judge {
   struct Outside {
     double share = 0;  // of the measured range
     std::string text;
+    std::string remedy = {};  // empty: the remedy of the rule
   };
 
-  /// A board counts the time from its start and runs for days. If the correction still changes at the end of
-  /// the measured time, as a drift of the base or of the instrument does and a warm-up that ended does not,
-  /// its terms in the time are extrapolated.
-  void add_outside_time(std::vector<Outside>& list) const {
-    constexpr double kDay_s = 86400, kStillChanges = 0.25;  // of the change within the measured time
-    constexpr double kNothing_mm = 1e-4;                    // as in judge_cancellation()
-    const model::Symbol time{model::SymbolKind::kTime, 0};
-    if (!acts(machine_, time)) return;
+  /// A quantity that only counts on: the time, or the rows in their order.
+  struct Clock {
+    model::SymbolKind kind;
+    const char *name, *unit;
+    double on_a_board;  // a board counts from its start: so far in a day
+    model::Column model::States::*column;
+    const char* remedy;
+  };
+
+  /// A board counts the time and the visits from its start and runs for days. If the correction still changes
+  /// at the end of the measured time or of the measured rows, as a drift of the base or of the instrument
+  /// does and a warm-up that ended does not, its terms in this count are extrapolated.
+  void add_outside_clocks(std::vector<Outside>& list) const {
+    constexpr double kDay_s = 86400, kVisitsOfDay = 1e6;  // as the ranges of a compiled image
+    add_outside_clock({model::SymbolKind::kTime, "time", " s", kDay_s, &model::States::time,
+                       "a drift of the base or of the instrument is no error that a board can correct: set "
+                       "its static to 0"},
+                      list);
+    add_outside_clock(
+        {model::SymbolKind::kVisit, "order of the readings", "", kVisitsOfDay, &model::States::visit,
+         "an error that follows the order of the readings, as a drift of the base or of the "
+         "instrument does, is no error that a board can correct: set its static to 0"},
+        list);
+  }
+
+  void add_outside_clock(const Clock& clock, std::vector<Outside>& list) const {
+    constexpr double kStillChanges = 0.25;  // of the change within the measured range
+    constexpr double kNothing_mm = 1e-4;    // as in judge_cancellation()
+    const model::Symbol symbol{clock.kind, 0};
+    if (!acts(machine_, symbol)) return;
+    const std::string name = model::symbol_name(machine_, symbol);
     for (const model::FitRecord::Range& measured : machine_.fitted->measured) {
-      if (measured.name != model::symbol_name(machine_, time)) continue;
+      if (measured.name != name) continue;
       const double length = measured.max - measured.min;
-      const auto at = [&](double seconds) {
+      const auto at = [&](double count) {
         model::States states = poses_.states;
-        states.time.setConstant(seconds);
+        (states.*clock.column).setConstant(count);
         return model::deviation(machine_, states);
       };
       const auto apart_mm = [&](double from, double to) {
@@ -304,12 +328,13 @@ class Judge {
                    after = apart_mm(measured.max, measured.max + length);
       if (after < kNothing_mm || after < kStillChanges * within) return;
       list.push_back(
-          {(kDay_s - measured.max) / length,
-           fmt::format("time t, measured from {:g} to {:g} s: the correction changes by {:.3g} um in "
-                       "it and by {:.3g} um in the same time after it, and a board runs for days. A "
-                       "drift of the base or of the instrument is no error that a board can correct: "
-                       "set its static to 0",
-                       measured.min, measured.max, maths::kUmPerMm * within, maths::kUmPerMm * after)});
+          {(clock.on_a_board - measured.max) / length,
+           fmt::format(
+               "{} {}, measured from {:g} to {:g}{}: the correction changes by {:.3g} um in it and by "
+               "{:.3g} um in the same range after it, and a board counts on for days",
+               clock.name, name, measured.min, measured.max, clock.unit, maths::kUmPerMm * within,
+               maths::kUmPerMm * after),
+           clock.remedy});
     }
   }
 
@@ -330,6 +355,7 @@ class Judge {
   }
 
   /// The value of the rule is the largest share; its culprit names all that exceed the limit, largest first.
+  /// The remedy is that of the largest.
   void add_outside(SafetyRule rule, std::vector<Outside> list) {
     std::stable_sort(list.begin(), list.end(),
                      [](const Outside& a, const Outside& b) { return a.share > b.share; });
@@ -338,7 +364,8 @@ class Judge {
       const bool worst = &one == &list.front() && one.share > 0;
       if (worst || one.share > text_of(rule).limit) culprit += (culprit.empty() ? "" : "; ") + one.text;
     }
-    add(rule, list.empty() ? 0 : list.front().share, std::move(culprit));
+    if (list.empty()) return add(rule, 0, "");
+    add(rule, list.front().share, std::move(culprit), list.front().remedy);
   }
 
   void judge_set_up() {
@@ -416,9 +443,11 @@ std::vector<SafetyRule> rules_named(const std::vector<std::string>& names) {
 }
 
 void SafetySheet::judge(SafetyRule rule, std::optional<double> value, std::string culprit,
-                        const std::vector<SafetyRule>& accepted) {
+                        const std::vector<SafetyRule>& accepted, std::string remedy) {
   const RuleText& text = text_of(rule);
-  SafetyFinding finding{rule, value, text.limit, text.unit, true, false, std::move(culprit), text.reason};
+  if (remedy.empty()) remedy = text.remedy;
+  SafetyFinding finding{
+      rule, value, text.limit, text.unit, true, false, std::move(culprit), text.reason, std::move(remedy)};
   finding.ok = !value || text::decisive(*value, text.name) <= text.limit;
   if (!finding.ok) finding.accepted = std::find(accepted.begin(), accepted.end(), rule) != accepted.end();
   findings.push_back(std::move(finding));
@@ -463,9 +492,8 @@ std::string SafetySheet::refusal() const {
   const bool holds = !not_measured.empty() && std::any_of(failed.begin(), failed.end(), [](const auto* one) {
     return one->rule == SafetyRule::kUncertainty;
   });
-  if (const std::string remedy = text_of(worst.rule).remedy;
-      !remedy.empty() && !(holds && worst.rule == SafetyRule::kUncertainty))
-    text += "; " + remedy;
+  if (!worst.remedy.empty() && !(holds && worst.rule == SafetyRule::kUncertainty))
+    text += "; " + worst.remedy;
   std::string accept;
   for (const SafetyFinding* finding : failed) {
     if (finding != &worst)

@@ -17,14 +17,14 @@ enum class SafetyRule : std::uint8_t {
   kCancellation = 2,   // terms that are much larger than their sum
   kUncertainty = 3,    // uncertainty of the correction in the working range of the machine, with its tools
   kMeasuredRange = 4,  // extrapolation beyond the measured range of the axes
-  kInputRange = 5,     // extrapolation beyond the measured range of temperatures and other inputs
-  kSetUp = 6,          // a set-up of the measurement that would affect an axis
-  kConverged = 7,      // the fit has converged
-  kResidual = 8,       // residual of the fit
-  kOutlier = 9,        // one reading that differs from all other readings
-  kCheckRows = 10,     // held-out check rows, compared with the nominal machine
-  kDisturbed = 11,     // a disturbance of the instrument, or a residual far above its noise
-  kBound = 12,         // proved error of the image divided by its correction; only `compile` tests this rule
+  kInputRange = 5,  // extrapolation beyond the measured range of temperatures, other inputs, time and visits
+  kSetUp = 6,       // a set-up of the measurement that would affect an axis
+  kConverged = 7,   // the fit has converged
+  kResidual = 8,    // residual of the fit
+  kOutlier = 9,     // one reading that differs from all other readings
+  kCheckRows = 10,  // held-out check rows, compared with the nominal machine
+  kDisturbed = 11,  // a disturbance of the instrument, or a residual far above its noise
+  kBound = 12,      // proved error of the image divided by its correction; only `compile` tests this rule
 };
 inline constexpr std::size_t kSafetyRuleCount = 13;  // number of rules on the sheet
 const char* rule_name(SafetyRule rule);
@@ -42,6 +42,7 @@ struct SafetyFinding {
   bool accepted = false;  // the rule is not met, and the user accepts this
   std::string culprit;    // parameter, axis, input or reading with the largest contribution
   std::string reason;     // reason for the limit
+  std::string remedy;     // what the user can do instead of accepting the rule; can be empty
 };
 
 /// The safety sheet of one machine, which `compile`, `export`, `upload` and the workbench use.
@@ -52,9 +53,10 @@ struct SafetySheet {
   std::vector<std::string> stale;
   /// The result of not_measured() for this machine.
   std::string not_measured;
-  /// Adds the finding of one rule to the sheet. Throws std::logic_error if the value is not finite.
+  /// Adds the finding of one rule to the sheet. `remedy`: of this culprit; empty: the remedy of the rule.
+  /// Throws std::logic_error if the value is not finite.
   void judge(SafetyRule rule, std::optional<double> value, std::string culprit,
-             const std::vector<SafetyRule>& accepted);
+             const std::vector<SafetyRule>& accepted, std::string remedy = {});
   bool ok() const;
   /// Returns the names of the rules without a value: nothing states the quantity, so the rule judged nothing.
   std::vector<std::string> not_known() const;

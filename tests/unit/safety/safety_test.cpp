@@ -206,8 +206,9 @@ TEST(SafetySheet, NamesEveryAxisThatWorksOutsideItsMeasuredRange) {
   EXPECT_NE(safety_sheet(fitted).refusal().find(culprit), std::string::npos);
 }
 
-/// The finding `input-range` of a machine whose X has a term in the time, fitted to an hour.
-SafetyFinding of_hour(const std::string& term) {
+/// The sheet of a machine whose X has a term in the time or in the visits, fitted to 120 rows. `seconds`:
+/// from one row to the next; 0: the rows have no times.
+SafetySheet of_clock(const std::string& term, double seconds) {
   const std::string statics =
       "<alpha value=\"0\" nominal=\"0\" unit=\"rad\"/><k value=\"0\" nominal=\"0\" unit=\"mm\"/>";
   const Machine model = small_machine(statics, "", "X-alpha*Y+k*" + term);
@@ -215,20 +216,67 @@ SafetyFinding of_hour(const std::string& term) {
   truth.statics[0].value = 5e-5, truth.statics[1].value = 0.02;
   Measurement m = survey(model, model, 1e-3);
   for (Eigen::Index row = 0; row < m.states.time.size(); ++row)
-    m.states.time[row] = 30 * static_cast<double>(row);
+    m.states.time[row] = seconds * static_cast<double>(row);
   const Eigen::VectorXd error = predict(truth, m) - predict(model, m);
   for (std::size_t i = 0; i < m.observations.size(); ++i)
     m.observations[i].value += error[static_cast<Eigen::Index>(i)];
-  return finding(safety_sheet(fit::fit(model, m).machine), SafetyRule::kInputRange);
+  return safety_sheet(fit::fit(model, m).machine);
 }
 
 TEST(SafetySheet, RefusesACorrectionThatStillDriftsWithTheTime) {
-  const SafetyFinding drift = of_hour("(t/3600)"), warm_up = of_hour("(1-exp(-t/600))");
+  const SafetySheet sheet = of_clock("(t/3600)", 30);
+  const SafetyFinding &drift = finding(sheet, SafetyRule::kInputRange),
+                      warm_up = finding(of_clock("(1-exp(-t/600))", 30), SafetyRule::kInputRange);
   EXPECT_FALSE(drift.ok);
   EXPECT_NEAR(*drift.value, (86400 - 3570) / 3570.0, 1e-6);
-  EXPECT_NE(drift.culprit.find("measured from 0 to 3570 s: the correction changes by"), std::string::npos)
+  EXPECT_NE(drift.culprit.find("time t, measured from 0 to 3570 s: the correction changes by"),
+            std::string::npos)
       << drift.culprit;
+  // The remedy is that of the time, not of a temperature.
+  EXPECT_NE(sheet.refusal().find("; a drift of the base or of the instrument is no error that a board"),
+            std::string::npos)
+      << sheet.refusal();
+  EXPECT_EQ(sheet.refusal().find("measure at the temperatures"), std::string::npos) << sheet.refusal();
   EXPECT_TRUE(warm_up.ok) << "it ended within the hour: " << warm_up.culprit;
+}
+
+/// A survey without times: the drift of its instrument follows the order of its readings.
+TEST(SafetySheet, RefusesACorrectionThatFollowsTheOrderOfTheReadings) {
+  const SafetySheet sheet = of_clock("(visit/120)", 0);
+  const SafetyFinding &drift = finding(sheet, SafetyRule::kInputRange),
+                      ended = finding(of_clock("(1-exp(-visit/20))", 0), SafetyRule::kInputRange);
+  EXPECT_FALSE(drift.ok);
+  EXPECT_NEAR(*drift.value, (1e6 - 119) / 119, 1e-6);
+  EXPECT_NE(drift.culprit.find("order of the readings visit, measured from 0 to 119: the correction"),
+            std::string::npos)
+      << drift.culprit;
+  EXPECT_NE(sheet.refusal().find("; an error that follows the order of the readings"), std::string::npos)
+      << sheet.refusal();
+  EXPECT_TRUE(ended.ok) << "it ended within the rows: " << ended.culprit;
+}
+
+/// The set-up of the rows of one run stays with these rows: no image contains it.
+TEST(SafetySheet, PassesASetUpOfEachRun) {
+  const auto machine_of = [](const std::string& shifts) {
+    return parse_machine(
+        "<machine><variables><static><alpha value=\"0\" nominal=\"0\" unit=\"rad\"/>" + shifts +
+            "</static><machineaxes><X min=\"0\" max=\"600\"/><Y min=\"0\" max=\"400\"/><Z min=\"-300\" "
+            "max=\"0\"/></machineaxes></variables><transforms><sixdof X=\"X-alpha*Y\" Y=\"Y\" Z=\"Z\"/>"
+            "</transforms></machine>",
+        "runs.xml");
+  };
+  const Machine model = machine_of("<BaseShift run=\"a\" X=\"0\"/><BaseShift run=\"b\" X=\"0\"/>");
+  Machine truth = model;
+  truth.statics[0].value = 5e-5;
+  Measurement m = survey(truth, model, 1e-3);
+  m.states.run_names = {"a", "b"};
+  for (std::size_t row = 0; row < m.rows(); ++row) m.states.run[row] = row < m.rows() / 2 ? 0 : 1;
+  for (Observation& one : m.observations)
+    if (one.kind == ObservationKind::kX && m.states.run[one.row] == 1) one.value += 0.5;
+  const Machine fitted = fit::fit(model, m).machine;
+  ASSERT_NEAR(fitted.base_shifts[1].value[0] - fitted.base_shifts[0].value[0], 0.5, 1e-3);
+  EXPECT_TRUE(finding(safety_sheet(fitted), SafetyRule::kInputRange).ok);
+  EXPECT_TRUE(finding(safety_sheet(fitted), SafetyRule::kSetUp).ok);
 }
 
 TEST(SafetySheet, JudgesEveryDeclaredTool) {
