@@ -116,10 +116,13 @@ std::string difference_in_words(const std::string& own, const std::vector<std::s
       own, fmt::join(others, "; "));
 }
 
-std::string step_between_runs_in_words() {
-  return " One change of the machine between two runs, such as a collision, at the time when this input "
-         "changed "
-         "too, would explain the readings as well: measure again at the first value of the input.";
+std::string one_step_in_words() {
+  return " One change of the machine or of its set-up, such as a collision, at the time when this input "
+         "changed too, is a further possible cause.";
+}
+
+std::string go_back_in_words() {
+  return " To distinguish the two, measure again at the first value of the input.";
 }
 
 std::string drift_of_instrument_in_words() {

@@ -46,9 +46,13 @@ std::string cause_in_words(const CandidateFinding& cause, const std::string& nex
 std::string aliases_in_words(const effects::Candidate& candidate, double period,
                              const std::vector<double>& aliases, const model::Axis& axis);
 
-/// Returns the sentence about one step of the machine between two runs that explains the readings as well as
-/// the named effect of an input.
-std::string step_between_runs_in_words();
+/// Returns the sentence about one step of the machine that explains the readings as well as the named effect
+/// of an input.
+std::string one_step_in_words();
+
+/// Returns the sentence about what to measure to distinguish an effect of an input from a change of the
+/// machine.
+std::string go_back_in_words();
 
 /// Returns the sentence about an instrument that drifts as the named effect does.
 std::string drift_of_instrument_in_words();

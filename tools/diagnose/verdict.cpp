@@ -167,7 +167,8 @@ class Decision {
                  after = answer_.ladder[1].chi_square_per_freedom;
     const std::size_t cause = accepted_.front();
     if (after > limits_.nearly_all * before ||
-        after > limits_.of_foreseen * finder_.share_left(cause) * before || !found_.close(0).empty())
+        after > limits_.of_foreseen * finder_.share_left(cause) * before || !found_.close(0).empty() ||
+        change_between_runs(0) || one_step(0))
       return {};
     for (std::size_t i = 2; i < answer_.ladder.size(); ++i) answer_.ladder[i].certain = false;
     compare_with_alternatives();
@@ -386,30 +387,34 @@ class Decision {
                                                            {accepted_.begin() + 1, accepted_.end()},
                                                            found_.options.thresholds.acceptance.distance);
     const bool or_run = !or_set_up && !or_day && change_between_runs(0);
+    const bool or_step = !or_set_up && !or_day && one_step(0);
+    const bool or_change = or_set_up || or_run || or_step;
     const std::string drifting =
-        or_set_up || or_day || or_run
-            ? std::string()
-            : file_whose_drift_explains(finder_.evidence(), pool_, accepted_.front(),
-                                        {accepted_.begin() + 1, accepted_.end()},
-                                        found_.options.thresholds.acceptance.distance);
+        or_change || or_day ? std::string()
+                            : file_whose_drift_explains(finder_.evidence(), pool_, accepted_.front(),
+                                                        {accepted_.begin() + 1, accepted_.end()},
+                                                        found_.options.thresholds.acceptance.distance);
     const bool or_file = !drifting.empty();
-    if (others == 0 && !or_set_up && !or_day && !or_run && !or_file) return {};
-    if (or_set_up || or_run) answer_.instrument = "set-up";
+    if (others == 0 && !or_change && !or_day && !or_file) return {};
+    if (or_change) answer_.instrument = "set-up";
     if (or_day || or_file) answer_.instrument = "drift";
-    return fmt::format(
-               "{} causes explain these data equally well; the most likely cause is {}.{}{}",
-               1 + others + (or_set_up || or_day || or_run || or_file ? 1 : 0),
-               pool_.candidate(accepted_.front()).spoken,
-               or_set_up ? " An instrument that was set up anew between the runs is a further possible cause."
-               : or_run
-                   ? " A change of the machine or of its set-up between the runs, such as a collision, is a "
-                     "further possible cause."
-                   : "",
-               or_day    ? " An instrument that drifts with the time of day is a further possible cause."
-               : or_file ? fmt::format(" A drift of the instrument of {} alone is a further possible cause.",
-                                       drifting)
-                         : "") +
-           rest();
+    std::string further;
+    if (or_set_up)
+      further = " An instrument that was set up anew between the runs is a further possible cause.";
+    else if (or_run)
+      further =
+          " A change of the machine or of its set-up between the runs, such as a collision, is a further "
+          "possible cause.";
+    else if (or_step)
+      further = one_step_in_words();
+    if (or_step) further += go_back_in_words();
+    if (or_day) further += " An instrument that drifts with the time of day is a further possible cause.";
+    if (or_file)
+      further += fmt::format(" A drift of the instrument of {} alone is a further possible cause.", drifting);
+    return fmt::format("{} causes explain these data equally well; the most likely cause is {}.",
+                       1 + others + (or_change || or_day || or_file ? 1 : 0),
+                       pool_.candidate(accepted_.front()).spoken) +
+           further + rest();
   }
 
   /// The sentence about the first effect, the next best cause and the certain steps beside it.
@@ -418,7 +423,7 @@ class Decision {
     return cause_in_words(answer_.candidates.front(),
                           other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
                           other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size()) +
-           or_a_reflector() + or_a_step() + or_a_drift();
+           or_a_reflector() + or_a_drift();
   }
 
   /// The same effect of two axes can have the same columns: a lag on a circle.
@@ -491,11 +496,10 @@ class Decision {
                                  found_.options.thresholds.acceptance.distance);
   }
 
-  /// The doubt of the sentence about the first effect: one step of the machine as the input stepped.
-  std::string or_a_step() const {
-    const bool step = step_between_runs_explains(finder_.evidence(), pool_, accepted_, 0,
-                                                 found_.options.thresholds.acceptance.distance);
-    return step ? step_between_runs_in_words() : "";
+  /// Is one step of the machine, at a change of the input of the accepted effect, as good a cause?
+  bool one_step(std::size_t position) const {
+    return one_step_explains(finder_.evidence(), pool_, accepted_, position,
+                             found_.options.thresholds.acceptance.distance);
   }
 
   /// A shift of all poses with the time alone is the same for a machine and for its instrument.
@@ -511,7 +515,7 @@ class Decision {
   /// temperatures, speeds or times.
   void mark_open_steps() {
     for (std::size_t i = 1; i < accepted_.size(); ++i) {
-      if (change_between_runs(i)) answer_.ladder[i + 1].certain = false;
+      if (change_between_runs(i) || one_step(i)) answer_.ladder[i + 1].certain = false;
       if (found_.close(i).empty()) continue;
       answer_.ladder[i + 1].certain = false;
       answer_.ladder[i + 1].causes = causes_of_step(found_, i);

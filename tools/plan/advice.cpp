@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tools/plan/plan.h"
 #include "tools/plan/uneven.h"
@@ -24,6 +25,28 @@ std::vector<std::string> advice_on_instrument(const std::string& instrument) {
         "the readings of the mark change as much, the instrument drifts. Do not add these readings to the "
         "measurement files."};
   return {};
+}
+
+/// What tells the effect of an input from one change of the machine at the time when the input changed.
+/// Nothing, if no such change is a cause, or if no measured row has the first value of the input.
+std::vector<std::string> advice_to_go_back(const model::Machine& machine, const model::Measurement& m,
+                                           const diagnose::Diagnosis& d) {
+  const effects::Choice& choice = d.candidates.front().candidate.choice;
+  if (d.instrument != "set-up" || choice.inputs.empty() || !choice.runs.empty() || m.rows() == 0) return {};
+  const std::string& name = choice.inputs.front();
+  std::string value;
+  const auto take = [&](const std::string& unit, const model::Column& column) {
+    if (std::isfinite(column[0]))
+      value = fmt::format(" ({:.4g}{}{})", column[0], unit.empty() ? "" : " ", unit);
+  };
+  if (const auto input = machine.find_input(name)) take(machine.inputs[*input].unit, m.states.input[*input]);
+  for (const model::CandidateInput& one : m.candidates)
+    if (one.name == name) take(one.unit, one.value);
+  return {fmt::format(
+      "Go back to the first value of {0}{1}, without touching the instrument, and measure the same poses "
+      "again, in a run of their own. An effect of {0} is then as it was at first; a change of the machine or "
+      "of its set-up stays. Next time measure at the first value, at the second, and again at the first.",
+      name, value)};
 }
 
 }  // namespace
@@ -50,8 +73,12 @@ std::vector<std::string> advice_for(const std::string& text, const model::Machin
   for (const diagnose::CandidateFinding& other : d.candidates) {
     const auto& names = other.confounded_with;
     if (&other == &first || std::find(names.begin(), names.end(), id) == names.end()) continue;
-    return advice(first.add, other.add);
+    std::vector<std::string> list = advice(first.add, other.add);
+    const std::vector<std::string> back = advice_to_go_back(machine, m, d);
+    list.insert(list.end(), back.begin(), back.end());
+    return list;
   }
+  if (std::vector<std::string> back = advice_to_go_back(machine, m, d); !back.empty()) return back;
   if (std::vector<std::string> on_instrument = advice_on_instrument(d.instrument); !on_instrument.empty())
     return on_instrument;
   if (first.confounded_with.empty()) return {};

@@ -75,4 +75,27 @@ double needed_non_centrality(double confidence, double lead) {
   return root * root;
 }
 
+double beyond_one_step(const PredictedEffect& effect, double confidence, double lead, double price) {
+  Eigen::MatrixXd free = effect.free;
+  for (Eigen::Index j = 0; j < free.cols(); ++j)
+    if (const double length = free.col(j).norm(); length > 0) free.col(j) /= length;
+  const auto left = [](const Eigen::MatrixXd& columns, const Eigen::MatrixXd& of) -> Eigen::MatrixXd {
+    return columns.cols() == 0 ? of : Eigen::MatrixXd(of - columns * maths::least_norm(columns, of));
+  };
+  const Eigen::VectorXd readings = left(free, effect.readings).col(0);
+  double worst = 1e300;
+  for (const Eigen::Index place : effect.places) {
+    if (place == 0) continue;
+    Eigen::MatrixXd both(readings.size(), 2);
+    both << effect.constant, effect.constant;
+    both.col(0).head(place).setZero();
+    both = left(free, both);
+    const double alone = left(both.leftCols(1), readings).squaredNorm(),
+                 beside = left(both, readings).squaredNorm();
+    worst = std::min({worst, alone / needed_non_centrality(confidence, lead),
+                      beside / needed_non_centrality(confidence, std::max(0.0, lead - price))});
+  }
+  return worst;
+}
+
 }  // namespace vernier::plan

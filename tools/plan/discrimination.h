@@ -46,4 +46,18 @@ class Discrimination {
 /// sqrt(lambda) = z + sqrt(z^2 + lead). `confidence`: between 0.5 and 1, without the limits.
 double needed_non_centrality(double confidence, double lead);
 
+/// An effect of an input in planned and measured rows, in units of u.
+struct PredictedEffect {
+  Eigen::VectorXd readings;          // what the effect adds to each reading
+  Eigen::VectorXd constant;          // the same if its inputs never changed
+  Eigen::MatrixXd free;              // Jacobian of the other parameters
+  std::vector<Eigen::Index> places;  // first reading of each run, and of each value of the inputs
+};
+
+/// How far the readings reject one change of the machine in place of the effect: the same error with one step
+/// from one of the places on, alone or beside a constant size. Returns the smallest chi^2 that remains after
+/// the refit, divided by the one that is needed; 1 or more: a diagnosis does not confuse the two. `price`: of
+/// one unknown in the BIC.
+double beyond_one_step(const PredictedEffect& effect, double confidence, double lead, double price);
+
 }  // namespace vernier::plan

@@ -8,6 +8,7 @@
 
 #include "tools/fit/fit.h"
 #include "tools/fit/least_squares/statistics.h"
+#include "tools/maths/median.h"
 #include "tools/model/chain/prediction.h"
 #include "tools/model/rebind.h"
 #include "tools/plan/choice.h"
@@ -22,6 +23,8 @@ namespace {
 constexpr std::size_t kLeastPoints = 4;
 /// So many points may always be spent on the other effects that explain the rows.
 constexpr std::size_t kModerate = 16;
+/// A plan that goes back to the first values of the inputs measures one row before, and two after.
+constexpr std::size_t kLeastReturn = 3;
 constexpr std::size_t kMostExisting = 1500;
 /// Time for a part to take on a new temperature before it is measured again, s.
 constexpr double kSoakS = 3600;
@@ -72,6 +75,9 @@ class Planner {
     if (plan_.rows.rows() > 0 && plan_.separable)
       for (const FittedHypothesis& other : other_hypotheses_)
         plan_.ruled_out.push_back(other.candidate.spoken);
+    if (plan_.rows.rows() > 0 && plan_.separable && follows_settable_input())
+      (beyond_step_ >= 1 ? plan_.ruled_out : plan_.not_ruled_out)
+          .emplace_back("one change of the machine or of its set-up when an input changes");
     plan_.sentence = Explanation(plan_, existing_).sentence();
     return std::move(plan_);
   }
@@ -213,53 +219,196 @@ class Planner {
 
   void choose_at_most(const Offers& offers, std::size_t most) {
     Sides sides = sides_of(offers.rows, offers.existing);
-    const std::size_t least = options_.points.value_or(kLeastPoints);
+    std::size_t least = options_.points.value_or(kLeastPoints), room = most;
     std::vector<std::size_t> chosen;
     double goal = 1;
     constexpr int kRounds = 4;  // of selection; each one compensates the loss by the real order
     for (int round = 0; round < kRounds; ++round) {
-      choose_rows(sides, chosen, least, most, goal);
+      choose_rows(sides, chosen, least, room, goal);
       exchange_rows(sides, chosen);
+      carry_out(offers, chosen, 0);
+      if (beyond_step_ < 1 && !away_from_usual(offers, chosen).empty() && most > kLeastReturn) {
+        // Of the points, three of five at most are measured before and after the others.
+        constexpr std::size_t kOfPoints = 5, kChosen = 2;
+        room = std::max<std::size_t>(1, most * kChosen / kOfPoints);
+        least = std::min(least, room);
+        if (chosen.size() > room) {
+          chosen.clear();
+          choose_rows(sides, chosen, least, room, goal);
+          exchange_rows(sides, chosen);
+        }
+        go_back(offers, chosen, most);
+      }
       // In their real order, at their real times, the rows may carry less information than one by one.
-      plan_.rows = carried_out(offers, chosen);
       const Sides real = sides_of(append_rows(existing_, plan_.rows), existing_.rows() + plan_.rows.rows());
       note(real, &Separation::planned);
       plan_.separable = real.reached(kPair) >= 1;
-      if (real.reached() >= 1 || chosen.size() >= most) break;
-      goal = std::max(goal, sides.reached()) / std::max(real.reached(), 0.2);
+      const double reached = std::min(real.reached(), beyond_step_);
+      if (reached >= 1 || chosen.size() >= room) break;
+      goal = std::max(goal, sides.reached()) / std::max(reached, 0.2);
     }
   }
 
-  /// Grouped by time, then by inputs (a temperature is set once), then by speed and place; one run.
-  model::Measurement carried_out(const Offers& offers, const std::vector<std::size_t>& chosen) const {
+  /// Adds rows at the usual values of the inputs before and after the chosen rows, as many as make one step
+  /// of the machine distinguishable from the effect of an input.
+  void go_back(const Offers& offers, const std::vector<std::size_t>& chosen, std::size_t most) {
+    const std::size_t away = away_from_usual(offers, chosen).size(), room = most - chosen.size();
+    if (options_.points) return carry_out(offers, chosen, room);
+    // Twice as many after as before: the rows measured so far are before as well.
+    constexpr std::size_t kOfAway = 3;
+    for (std::size_t count = kLeastReturn; count <= std::min(room, std::max(kLeastReturn, kOfAway * away));
+         ++count) {
+      carry_out(offers, chosen, count);
+      if (beyond_step_ >= 1) return;
+    }
+  }
+
+  /// Is an effect that the plan distinguishes driven by an input that the user can set?
+  bool follows_settable_input() const {
+    return follows_settable_input(plan_.a) || follows_settable_input(plan_.b);
+  }
+  bool follows_settable_input(const FittedHypothesis& hypothesis) const {
+    const std::vector<std::string>& inputs = hypothesis.candidate.choice.inputs;
+    return std::any_of(inputs.begin(), inputs.end(), [&](const std::string& name) {
+      return std::find(plan_.not_settable.begin(), plan_.not_settable.end(), name) ==
+             plan_.not_settable.end();
+    });
+  }
+
+  /// beyond_one_step() of the worse effect, for the measured rows and these.
+  double beyond_one_step_with(const model::Measurement& planned) const {
+    const model::Measurement rows = append_rows(existing_, planned);
+    const std::vector<Eigen::Index> first = first_observations(rows);
+    const double price = std::log(static_cast<double>(first[existing_.rows()]));
+    double worst = 1e300;
+    for (const FittedHypothesis* hypothesis : {&plan_.a, &plan_.b}) {
+      if (!follows_settable_input(*hypothesis)) continue;
+      const model::Measurement bound = bound_to(rows, *hypothesis);
+      model::Measurement constant = bound;
+      for (std::size_t i = 0; i < constant.states.input.size(); ++i)
+        constant.states.input[i].setConstant(hypothesis->machine.inputs[i].reference + 1);
+      constant.states.time.setConstant(bound.states.time.maxCoeff());
+      const model::Machine bare = without_effect(*hypothesis);
+      const Eigen::VectorXd weights = fit::fit_weights(bound) / spread_;
+      PredictedEffect effect;
+      const auto size_in = [&](const model::Measurement& m) -> Eigen::VectorXd {
+        return weights.cwiseProduct(model::predict(hypothesis->machine, m) - model::predict(bare, m));
+      };
+      effect.readings = size_in(bound);
+      effect.constant = size_in(constant);
+      effect.free = linear(rows, *hypothesis).jacobian(Eigen::all, others_than(*hypothesis));
+      for (std::size_t row = 1; row < rows.rows(); ++row)
+        if (rows.states.run[row] != rows.states.run[row - 1] ||
+            (row >= existing_.rows() && settings(rows, row) != settings(rows, row - 1)))
+          effect.places.push_back(first[row]);
+      worst = std::min(worst, beyond_one_step(effect, options_.confidence, kLead, price));
+    }
+    return worst;
+  }
+
+  /// The free parameters that are none of the effect.
+  std::vector<Eigen::Index> others_than(const FittedHypothesis& hypothesis) const {
+    const std::vector<effects::CandidateUnknown>& own = hypothesis.candidate.unknowns;
+    std::vector<Eigen::Index> others;
+    Eigen::Index at = 0;
+    for (const model::Parameter& parameter : parameters_of(hypothesis)) {
+      if (std::none_of(own.begin(), own.end(), [&](const auto& one) { return one.name == parameter.name; }))
+        others.push_back(at);
+      ++at;
+    }
+    return others;
+  }
+
+  /// The values of all inputs in a row.
+  static std::vector<double> settings(const model::Measurement& rows, std::size_t row) {
+    const auto at = static_cast<Eigen::Index>(row);
+    std::vector<double> values;
+    for (const model::Column& column : rows.states.input) values.push_back(column[at]);
+    for (const model::CandidateInput& candidate : rows.candidates) values.push_back(candidate.value[at]);
+    return values;
+  }
+
+  /// Sets the inputs of a row that drive the effects to their usual values so far.
+  void set_usual(model::Measurement& rows, std::size_t row) const {
+    const auto at = static_cast<Eigen::Index>(row);
+    const auto usual = [](const model::Column& column) {
+      return maths::median(std::vector<double>{column.begin(), column.end()});
+    };
+    for (std::size_t i = 0; i < rows.states.input.size(); ++i)
+      if (drivers_.inputs.contains(model_.machine.inputs[i].name))
+        rows.states.input[i][at] = usual(existing_.states.input[i]);
+    for (std::size_t i = 0; i < rows.candidates.size(); ++i)
+      if (drivers_.inputs.contains(rows.candidates[i].name))
+        rows.candidates[i].value[at] = usual(existing_.candidates[i].value);
+  }
+
+  /// The chosen rows with other values of the inputs than the usual ones.
+  std::vector<std::size_t> away_from_usual(const Offers& offers,
+                                           const std::vector<std::size_t>& chosen) const {
+    std::vector<std::size_t> away;
+    for (const std::size_t offer : chosen) {
+      model::Measurement row = model::select_rows(offers.rows, {offers.existing + offer});
+      const std::vector<double> set = settings(row, 0);
+      set_usual(row, 0);
+      if (settings(row, 0) != set) away.push_back(offer);
+    }
+    return away;
+  }
+
+  /// The inputs that drive the effects, with their values in a row: "T_bed 26 degC".
+  std::string in_words(const model::Measurement& rows, std::size_t row) const {
+    const auto at = static_cast<Eigen::Index>(row);
+    std::string text;
+    const auto add = [&](const std::string& name, const std::string& unit, double value) {
+      if (drivers_.inputs.contains(name))
+        text += fmt::format("{}{} {:.4g}{}{}", text.empty() ? "" : ", ", name, value, unit.empty() ? "" : " ",
+                            unit);
+    };
+    for (std::size_t i = 0; i < rows.states.input.size(); ++i)
+      add(model_.machine.inputs[i].name, model_.machine.inputs[i].unit, rows.states.input[i][at]);
+    for (const model::CandidateInput& one : rows.candidates) add(one.name, one.unit, one.value[at]);
+    return text;
+  }
+
+  /// Sets the planned rows: the chosen ones grouped by time, then by inputs (a temperature is set once), then
+  /// by speed and place; one run. `back`: number of rows before and after them at the usual values of the
+  /// inputs, at the places of chosen rows.
+  void carry_out(const Offers& offers, const std::vector<std::size_t>& chosen, std::size_t back) {
     std::vector<std::size_t> order;
     for (const std::size_t offer : chosen) order.push_back(offers.existing + offer);
     const model::Measurement& all = offers.rows;
-    const auto settings = [&](std::size_t row) {
-      const auto at = static_cast<Eigen::Index>(row);
-      std::vector<double> values;
-      for (const model::Column& column : all.states.input) values.push_back(column[at]);
-      for (const model::CandidateInput& candidate : all.candidates) values.push_back(candidate.value[at]);
-      return values;
-    };
     const auto key = [&](std::size_t row) {
       const auto at = static_cast<Eigen::Index>(row);
       std::vector<double> rest = {all.states.feed[at]};
       for (const model::Column& q : all.states.axis) rest.push_back(q[at]);
-      return std::tuple(all.states.time[at], settings(row), rest);
+      return std::tuple(all.states.time[at], settings(all, row), rest);
     };
     std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return key(x) < key(y); });
+    const std::size_t before = back / kLeastReturn, last = before + order.size();
+    const double begin = order.empty() ? 0 : all.states.time[static_cast<Eigen::Index>(order.front())];
+    const std::vector<std::size_t> away =
+        back > 0 ? away_from_usual(offers, chosen) : std::vector<std::size_t>{};
+    for (std::size_t i = 0; i < back; ++i) {
+      const std::size_t row = offers.existing + away[i % away.size()];
+      order.insert(i < before ? order.begin() + static_cast<std::ptrdiff_t>(i) : order.end(), row);
+    }
     model::Measurement rows = model::select_rows(all, order);
     model::make_one_run(rows.states, kPlanRun);
+    for (std::size_t i = 0; i < rows.rows() && back > 0; ++i) {
+      if (i < before) rows.states.time[static_cast<Eigen::Index>(i)] = begin;
+      if (i < before || i >= last) set_usual(rows, i);
+    }
     double time = -1e300;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const bool other = i > 0 && settings(order[i]) != settings(order[i - 1]);
+    for (std::size_t i = 0; i < rows.rows(); ++i) {
+      const bool other = i > 0 && settings(rows, i) != settings(rows, i - 1);
       const auto at = static_cast<Eigen::Index>(i);
       time = std::max(rows.states.time[at], i == 0 ? -1e300 : time + (other ? kSoakS : pace()));
       rows.states.time[at] = time;
       rows.states.visit[at] = static_cast<double>(i);
     }
-    return rows;
+    plan_.rows = std::move(rows);
+    plan_.back_to = back > 0 ? in_words(plan_.rows, 0) : "";
+    beyond_step_ = beyond_one_step_with(plan_.rows);
   }
 
   /// Time from one row to the next as it was recorded.
@@ -275,6 +424,7 @@ class Planner {
   model::Measurement existing_;
   std::vector<FittedHypothesis> other_hypotheses_;
   double spread_ = 1;
+  double beyond_step_ = 1e300;  // beyond_one_step_with() the planned rows
 };
 
 }  // namespace

@@ -224,7 +224,14 @@ std::string Explanation::sentence() const {
     why =
         fmt::format(": at {}, {} {}, {} {}", contrast.farthest, a, behaves(answers.a), b, behaves(answers.b));
   }
-  return fmt::format("Measure {} points {}{}.{}", plan_.rows.rows(), where, why, beyond);
+  const std::string order =
+      plan_.back_to.empty()
+          ? ""
+          : fmt::format(
+                " Begin and end at {}: one change of the machine, such as a collision, does not "
+                "disappear when the input is back at its first value.",
+                plan_.back_to);
+  return fmt::format("Measure {} points {}{}.{}{}", plan_.rows.rows(), where, why, order, beyond);
 }
 
 }  // namespace vernier::plan

@@ -50,6 +50,8 @@ struct Plan {
                                            // explain the planned rows
   std::vector<std::string> not_ruled_out;  // other effects that no such plan distinguishes from the two
                                            // effects
+  std::string back_to;                     // inputs with the values of the first and of the last planned
+                                           // rows: "T_bed 26 degC"; empty: the plan does not return
   std::string sentence;                    // text of the plan for users
   const Separation& worse() const;
 };

@@ -88,10 +88,13 @@ TEST(Improve, AddsNoHeatThatAChangeBetweenTheRunsExplainsAsWell) {
 }
 
 /// The scale steps at the begin of a run, and the temperature steps too: no row separates the two.
-TEST(Improve, SaysThatOneStepBetweenTheRunsExplainsAHeatAsWell) {
+TEST(Improve, AddsNoHeatThatOneStepBetweenTheRunsExplainsAsWell) {
   const Improved result = improve("collision_with_heat");
-  EXPECT_THAT(result.said, HasSubstr("One change of the machine between two runs, such as a collision"));
+  EXPECT_THAT(result.effects(), testing::IsEmpty());
+  EXPECT_EQ(result.json["verdict"], "ambiguous");
+  EXPECT_THAT(result.said, HasSubstr("One change of the machine or of its set-up, such as a collision"));
   EXPECT_THAT(result.said, HasSubstr("measure again at the first value of the input"));
+  EXPECT_THAT(result.said, HasSubstr("Go back to the first value of "));
 }
 
 /// The readings step at each quarter of a run. A slow response to heat follows a part of the steps, and was

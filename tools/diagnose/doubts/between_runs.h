@@ -17,9 +17,10 @@ namespace vernier::diagnose {
 bool sizes_of_runs_explain(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
                            std::size_t position, double distance);
 
-/// As sizes_of_runs_explain(), for the same error with one step from a run on, and for an effect of an input
-/// only: a temperature that steps with the machine.
-bool step_between_runs_explains(const Evidence& evidence, const Pool& pool,
-                                const std::vector<std::size_t>& items, std::size_t position, double distance);
+/// As sizes_of_runs_explain(), for the same error with one step from a row on, alone or beside a constant
+/// size, and for an effect of an input only: a temperature or a load that steps as the machine does. The step
+/// is at the begin of a run, or at the row within a run at which an input of the effect steps.
+bool one_step_explains(const Evidence& evidence, const Pool& pool, const std::vector<std::size_t>& items,
+                       std::size_t position, double distance);
 
 }  // namespace vernier::diagnose

@@ -385,9 +385,18 @@ Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::
 
 double bic_decrease(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside,
                     std::size_t scanned) {
-  const Gain gain = gain_of(evidence, raw, beside);
-  const double price = std::log(static_cast<double>(evidence.residual().size()));
-  return gain.chi_square - price * (gain.rank + static_cast<double>(scanned));
+  const OwnPart own = own_part(evidence, raw, beside);
+  const double freedom = std::max(1.0, evidence.freedom() - static_cast<double>(own.others));
+  // -2 log likelihood with the most likely noise, but never below a given u: the noise of one of two compared
+  // models must not scale their common part.
+  const auto deviance = [&](double square) {
+    const double reduced = square / freedom;
+    if (evidence.noise_known() && reduced <= 1) return square;
+    return freedom * (1 + std::log(std::max(reduced, 1e-300)));
+  };
+  const double before = own.rest.squaredNorm(), after = std::max(0.0, before - own.explained()),
+               price = std::log(static_cast<double>(evidence.residual().size()));
+  return deviance(before) - deviance(after) - price * (own.rank() + static_cast<double>(scanned));
 }
 
 AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const effects::DofPlace& place,

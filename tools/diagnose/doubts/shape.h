@@ -30,8 +30,9 @@ struct Gain {
 /// columns `beside` are fitted too.
 Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside);
 
-/// Returns the decrease of the BIC by the whitened columns `raw`, beside `beside` as in gain_of(). `scanned`:
-/// number of unknowns that were searched for the columns.
+/// Returns the decrease of the BIC by the whitened columns `raw`, beside `beside` as in gain_of(), each model
+/// with its most likely noise, but never below a given u. `scanned`: number of unknowns that were searched
+/// for the columns.
 double bic_decrease(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside,
                     std::size_t scanned);
 
