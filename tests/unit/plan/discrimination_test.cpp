@@ -113,5 +113,32 @@ TEST(ChooseRows, ReachesTheGoalWithNoMoreRowsThanRandomOnes) {
   EXPECT_LT(left_over(p, 20, plain), 50);
 }
 
+TEST(Discrimination, OneStepExplainsTwoLevelsAndNotAReturnToTheFirst) {
+  // Ten rows at the first value of an input, ten at the second, and ten at the first again.
+  constexpr Eigen::Index kRows = 10;
+  constexpr double kSize = 3, kConfidence = 0.95, kLeadOfBic = 6, kPrice = 4;
+  PredictedEffect there;
+  there.readings = Eigen::VectorXd::Zero(2 * kRows);
+  there.readings.tail(kRows).setConstant(kSize);
+  there.constant = Eigen::VectorXd::Constant(2 * kRows, 1);
+  there.free = Eigen::MatrixXd(2 * kRows, 0);
+  there.places = {kRows};
+  EXPECT_NEAR(beyond_one_step(there, kConfidence, kLeadOfBic, kPrice), 0, 1e-12);
+  PredictedEffect back = there;
+  back.readings.conservativeResize(3 * kRows);
+  back.readings.tail(kRows).setZero();
+  back.constant = Eigen::VectorXd::Constant(3 * kRows, 1);
+  back.free = Eigen::MatrixXd(3 * kRows, 0);
+  back.places = {kRows, 2 * kRows};
+  // Half of the size is left in the rows of both levels that the step does not separate.
+  const double left = 2 * kRows * kSize * kSize / 4;
+  EXPECT_NEAR(beyond_one_step(back, kConfidence, kLeadOfBic, kPrice),
+              left / needed_non_centrality(kConfidence, kLeadOfBic), 1e-9);
+  // A free shift of the last rows takes the return away.
+  back.free = Eigen::MatrixXd::Zero(3 * kRows, 1);
+  back.free.bottomRows(kRows).setOnes();
+  EXPECT_NEAR(beyond_one_step(back, kConfidence, kLeadOfBic, kPrice), 0, 1e-12);
+}
+
 }  // namespace
 }  // namespace vernier::discrimination_test
