@@ -211,24 +211,31 @@ class Decision {
     return true;
   }
 
-  /// The first step explains most of the error beyond u, no other cause does, and the check rows confirm it:
-  /// it is named, whatever the rest is, and the sentence says that the rest is not noise.
+  /// Certain steps explain most of the error beyond u, the first of them the larger part: they are named,
+  /// whatever the rest is, and the sentence says that the rest is not noise. A step is certain if the check
+  /// rows confirm it, no other cause explains it, and it explains more than it leaves; the first step may
+  /// leave what the later ones explain.
   bool explains_most() {
     const std::vector<LadderStep>& ladder = answer_.ladder;
-    const std::size_t cause = accepted_.front();
-    const double before = ladder[0].chi_square_per_freedom - 1, after = ladder[1].chi_square_per_freedom - 1;
+    const double before = ladder[0].chi_square_per_freedom - 1;
     const double chance = limits_.noise_sigmas * std::sqrt(2 / std::max(1.0, answer_.end.freedom));
-    if (!fit::has_uncertainty(found_.measurement) || before < chance || !found_.confirmed.contains(cause) ||
-        pool_.is_custom(cause) || !found_.close(0).empty() ||
-        before - after < limits_.most_of_excess * before)
-      return false;
-    // A later step is certain if it explains more than it leaves.
-    for (std::size_t step = 2; step < ladder.size(); ++step) {
-      const double left = ladder[step].chi_square_per_freedom;
-      if (!found_.close(step - 1).empty() || !found_.confirmed.contains(accepted_[step - 1]) ||
-          ladder[step - 1].chi_square_per_freedom - left < left - 1)
-        answer_.ladder[step].certain = false;
+    if (!fit::has_uncertainty(found_.measurement) || before < chance) return false;
+    double explained = 0;
+    std::vector<std::size_t> uncertain;
+    for (std::size_t step = 1; step < ladder.size(); ++step) {
+      const std::size_t item = accepted_[step - 1];
+      const double left = ladder[step].chi_square_per_freedom - 1,
+                   own = ladder[step - 1].chi_square_per_freedom - 1 - left;
+      const bool stands = found_.confirmed.contains(item) && found_.close(step - 1).empty() &&
+                          (step > 1 ? own >= left : !pool_.is_custom(item) && own > before - own);
+      if (step == 1 && !stands) return false;
+      if (!stands)
+        uncertain.push_back(step);
+      else if (!pool_.is_custom(item))
+        explained += own;
     }
+    if (explained < limits_.most_of_excess * before) return false;
+    for (const std::size_t step : uncertain) answer_.ladder[step].certain = false;
     return true;
   }
 

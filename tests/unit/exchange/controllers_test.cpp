@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <random>
 #include <sstream>
 
@@ -13,7 +14,9 @@
 #include "tools/exchange/controller/placing.h"
 #include "tools/exchange/controller/tables.h"
 #include "tools/model/chain/chain.h"
+#include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
+#include "tools/model/parameters.h"
 #include "tools/text/error.h"
 
 namespace vernier::controllers_test {
@@ -357,6 +360,43 @@ TEST(ControllerTables, AreZeroAtTheReference) {
   const Case one = export_of(Controller::kSiemens);
   for (const ControllerTable& table : one.tables.tables)
     EXPECT_NEAR((table.at(0, 1) + table.at(0, -1)) / 2, 0, 1e-6) << table.input << table.output;
+}
+
+/// The straightness of Y along X by a fit: each value has this standard uncertainty.
+Case with_straightness_uncertain_by(double std_mm) {
+  Case one = export_of(Controller::kSiemens);
+  auto record = std::make_shared<FitRecord>();
+  one.machine.tables.front().free[1] = true;  // the column Y
+  const ParameterSet parameters(one.machine, {});
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].name.ends_with("].Y")) record->parameters.push_back(parameters[i].name);
+  const auto n = static_cast<Eigen::Index>(record->parameters.size());
+  EXPECT_GT(n, 3);
+  record->factor = Eigen::MatrixXd::Identity(n, n) * std_mm;
+  one.machine.fitted = record;
+  one.tables =
+      controller_tables(one.machine, one.axes, rules_of(Controller::kSiemens, {}), one.at, {1, 0, {0, 0, 0}});
+  return one;
+}
+
+TEST(ControllerTables, HaveNoStraightnessThatIsAsUncertainAsItself) {
+  const Case sure = with_straightness_uncertain_by(0.0005), open = with_straightness_uncertain_by(0.005);
+  EXPECT_TRUE(sure.tables.uncertain.empty());
+  ASSERT_EQ(open.tables.uncertain.size(), 1U);
+  EXPECT_EQ(open.tables.uncertain.front().input, 0U);
+  EXPECT_EQ(open.tables.uncertain.front().output, 1U);
+  EXPECT_GT(open.tables.uncertain.front().std_um, open.tables.uncertain.front().um / 2);
+  const ControllerTable *curve = sure.tables.find(0, 1), *line = open.tables.find(0, 1);
+  ASSERT_NE(curve, nullptr);
+  ASSERT_NE(line, nullptr);
+  const auto bend = [](const ControllerTable& table) {
+    const std::vector<double>& v = table.forward;
+    return std::abs(v[v.size() / 2] - (v.front() + v.back()) / 2);
+  };
+  EXPECT_GT(bend(*curve), 0.005);
+  EXPECT_LT(bend(*line), 0.00011);  // the resolution of the values
+  EXPECT_EQ(line->at(0, 1), 0);     // zero at the reference
+  EXPECT_EQ(open.tables.find(0, 0)->forward, sure.tables.find(0, 0)->forward);
 }
 
 TEST(ControllerTables, MoveEachAxisAgainstItsError) {

@@ -57,9 +57,15 @@ exchange::ControllerWishes wishes_of(const ControllerArguments& arguments, const
 
 /// What remains in the state of the export, and the inputs, speeds and times that no table holds.
 std::vector<exchange::LeftOut> left_out_of(const model::Machine& machine, const exchange::ThreeAxes& axes,
-                                           const model::States& at,
-                                           const exchange::ControllerErrors& errors) {
+                                           const model::States& at, const exchange::ControllerErrors& errors,
+                                           const exchange::ControllerTables& tables) {
   std::vector<exchange::LeftOut> left = remaining(errors.after_um);
+  for (const exchange::UncertainShape& one : tables.uncertain)
+    left.push_back(
+        {fmt::format("straightness of {} along {} beside its straight line, because the readings do "
+                     "not determine it (uncertainty {:.3g} um rms): rms of the model",
+                     exchange::kLetters[one.output], exchange::kLetters[one.input], one.std_um),
+         one.um});
   for (const std::size_t axis : axes.axis)
     for (exchange::LeftOut& one : exchange::beyond_own_axis(machine, axis, at))
       if (!one.other_axis) left.push_back(std::move(one));
@@ -148,7 +154,7 @@ void export_controller(const ControllerArguments& arguments, Controller controll
   print_tables(common, tables, errors);
   print_rms(common, errors.positions, errors.rms_before_um, errors.rms_after_um);
   print_rotation(common, errors);
-  finish(machine, common, name, left_out_of(machine, axes, at, errors), files, {}, true,
+  finish(machine, common, name, left_out_of(machine, axes, at, errors, tables), files, {}, true,
          result_json(errors, tables));
 }
 

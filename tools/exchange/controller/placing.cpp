@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/exchange/left_out.h"
+#include "tools/exchange/variance_of.h"
 #include "tools/kinematics/correction.h"
 #include "tools/model/chain/periods.h"
 #include "tools/text/error.h"
@@ -286,6 +288,62 @@ class InputAxis {
 
 }  // namespace
 
+namespace {
+
+/// The straight line that fits values at equal distances best.
+Eigen::VectorXd line_of(const Eigen::VectorXd& values) {
+  const Eigen::VectorXd place = Eigen::VectorXd::LinSpaced(values.size(), -1, 1);
+  return Eigen::VectorXd::Constant(values.size(), values.mean()) +
+         place * (place.dot(values) / place.squaredNorm());
+}
+
+/// Values of the tables of an input axis for the two other axes without their straight lines, one below the
+/// other, in the middle of the other axes.
+Eigen::VectorXd shapes_along(const model::Machine& machine, const ThreeAxes& axes, const model::States& at,
+                             std::size_t input) {
+  constexpr std::size_t kPositions = 33;
+  std::vector<double> positions;
+  for (std::size_t k = 0; k < kPositions; ++k)
+    positions.push_back(axes.low[input] +
+                        (axes.high[input] - axes.low[input]) * static_cast<double>(k) / (kPositions - 1));
+  const Matrix3Xd values = Along(machine, axes, at, input, 1)(positions, 0);
+  Eigen::VectorXd shapes(2 * values.cols());
+  for (std::size_t other = 1; other <= 2; ++other) {
+    const Eigen::VectorXd row = values.row(static_cast<Index>((input + other) % 3));
+    shapes.segment(static_cast<Index>(other - 1) * values.cols(), values.cols()) = row - line_of(row);
+  }
+  return shapes;
+}
+
+/// Straight lines in place of the tables whose shape is less than twice its standard uncertainty.
+void leave_uncertain_shapes(ControllerTables& result, const model::Machine& machine, const ThreeAxes& axes,
+                            const model::States& at, const ControllerRules& rules) {
+  if (!machine.fitted || machine.fitted->factor.cols() == 0) return;
+  for (std::size_t input = 0; input < 3; ++input) {
+    const auto of = [&](const model::Machine& moved) { return shapes_along(moved, axes, at, input); };
+    if (result.find(input, (input + 1) % 3) == nullptr && result.find(input, (input + 2) % 3) == nullptr)
+      continue;
+    const Eigen::VectorXd shapes = of(machine), variance = variance_of(machine, machine.fitted->factor, of);
+    for (ControllerTable& table : result.tables) {
+      if (table.input != input || table.output == input) continue;
+      const Index half = shapes.size() / 2, from = table.output == (input + 1) % 3 ? 0 : half;
+      const double rms = std::sqrt(shapes.segment(from, half).squaredNorm() / static_cast<double>(half)),
+                   std = std::sqrt(variance.segment(from, half).mean());
+      if (1000 * rms < kNothing_um || std <= kMostShare * rms) continue;
+      result.uncertain.push_back({table.input, table.output, 1000 * rms, 1000 * std});
+      for (std::vector<double>* const values : {&table.forward, &table.reverse}) {
+        Eigen::Map<Eigen::VectorXd> all(values->data(), static_cast<Index>(values->size()));
+        all = line_of(all);
+      }
+      const double zero = table.at(result.reference[input], 1);
+      for (std::vector<double>* const values : {&table.forward, &table.reverse})
+        for (double& value : *values) value = to_step(value - zero, rules.value_step_mm);
+    }
+  }
+}
+
+}  // namespace
+
 ControllerTables controller_tables(const model::Machine& machine, const ThreeAxes& axes,
                                    const ControllerRules& rules, const model::States& at,
                                    const ControllerWishes& wishes) {
@@ -296,6 +354,7 @@ ControllerTables controller_tables(const model::Machine& machine, const ThreeAxe
     for (ControllerTable& table : one.tables(result.reversal[input], result.between_um[input]))
       result.tables.push_back(std::move(table));
   }
+  leave_uncertain_shapes(result, machine, axes, at, rules);
   return result;
 }
 

@@ -32,8 +32,11 @@ struct ControllerWishes {
 /// are rounded as in the files of the controller. If step_mm is 0, the number of points is increased until
 /// the error between the points is within the tolerance, or the controller's limit is reached. If the limit
 /// is reached, the number of points with the smallest error is used. Tables for other axes are omitted if
-/// their values are below a quarter of the tolerance. `at` (one state): values of inputs and motion. Throws
-/// InputError if step_mm needs more points than the controller permits.
+/// their values are below a quarter of the tolerance. A table for another axis whose shape beside its
+/// straight line is less than twice its standard uncertainty by the last fit (rms over the travel) has the
+/// straight line only (`uncertain`): as in the safety sheet, such a correction may increase the error. `at`
+/// (one state): values of inputs and motion. Throws InputError if step_mm needs more points than the
+/// controller permits.
 ControllerTables controller_tables(const model::Machine& machine, const ThreeAxes& axes,
                                    const ControllerRules& rules, const model::States& at,
                                    const ControllerWishes& wishes);

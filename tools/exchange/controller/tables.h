@@ -27,6 +27,13 @@ struct ControllerTable {
   double at(double position_mm, double direction) const;
 };
 
+/// A straightness that the last fit does not determine: its table has the straight line only.
+struct UncertainShape {
+  std::size_t input = 0, output = 0;  // as in ControllerTable
+  double um = 0;                      // rms of the shape that is left out
+  double std_um = 0;                  // its standard uncertainty, rms
+};
+
 /// All compensation tables of a machine. Each table is zero at the reference position (mean of both
 /// directions).
 struct ControllerTables {
@@ -36,6 +43,7 @@ struct ControllerTables {
   std::array<double, 3> reversal{};
   std::array<double, 3> reference{};   // reference position at which the tables are zero, mm
   std::array<double, 3> between_um{};  // for each input axis: largest error between the points of its tables
+  std::vector<UncertainShape> uncertain;
 
   /// Returns the table for an input axis and an output axis; nullptr if there is no such table.
   const ControllerTable* find(std::size_t input, std::size_t output) const;

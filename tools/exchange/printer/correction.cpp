@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "tools/exchange/variance_of.h"
 #include "tools/format/columns.h"
 #include "tools/kinematics/correction.h"
 #include "tools/maths/decompositions.h"
@@ -91,30 +92,6 @@ StraightParts straight_parts(const Matrix3Xd& points, const Matrix3Xd& offset) {
   return {x[1] + y[0], x[2], y[2], x[0], y[1], z[2]};
 }
 
-/// Returns the squares of the changes of `of` (a function of a machine) by the columns of `factor`, which is
-/// a factor of the covariance of the last fit: the variance of `of`.
-template <class Of>
-VectorXd variance_of(const model::Machine& machine, const Eigen::MatrixXd& factor, const Of& of) {
-  const model::FitRecord& record = *machine.fitted;
-  model::Machine moved = machine;
-  moved.base_shifts.clear();
-  moved.tool_shifts.clear();
-  const model::ParameterSet parameters(moved, {});
-  const VectorXd values = parameters.get(moved), as_fitted = of(moved);
-  VectorXd squares = VectorXd::Zero(as_fitted.size());
-  for (Index column = 0; column < factor.cols(); ++column) {
-    VectorXd shifted = values;
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      const auto place = std::find(record.parameters.begin(), record.parameters.end(), parameters[i].name);
-      if (place == record.parameters.end()) continue;
-      shifted[static_cast<Index>(i)] += factor(static_cast<Index>(place - record.parameters.begin()), column);
-    }
-    parameters.set(moved, shifted);
-    squares += (of(moved) - as_fitted).cwiseAbs2();
-  }
-  return squares;
-}
-
 /// Standard uncertainty of the straight parts: by the parameters that no reading of the last fit determines,
 /// or by all parameters. 0 if the last fit is not known.
 StraightParts std_of_parts(const model::Machine& machine, const ThreeAxes& axes, const model::States& at,
@@ -135,10 +112,6 @@ VectorXd heights_of(const model::Machine& machine, const ThreeAxes& axes, const 
   const VectorXd heights = needed(machine, axes, grid(axes, {kSide, kSide, 1}), at).row(2);
   return heights.array() - heights.mean();
 }
-
-/// As in the safety sheet: a correction whose standard uncertainty exceeds half of its value may increase the
-/// error.
-constexpr double kMostShare = 0.5;
 
 /// Fits skew and steps, without the parts that the last fit did not measure. `by_all`: the whole standard
 /// uncertainty counts.
