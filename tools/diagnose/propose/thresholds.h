@@ -217,7 +217,7 @@ struct VerdictThresholds {
   /// Largest structure in a residual of the size of the noise, as a share of the mean square that a certain
   /// step removes.
   double small_structure = levels.small;
-  /// Least share of the error beyond u that a first step explains which is named beside an unexplained rest.
+  /// Least share of the error beyond u that certain steps explain which are named beside an unexplained rest.
   double most_of_excess = levels.majority;
   /// Number of steps of the readings from which an effect that changes in time is a candidate only.
   std::size_t most_steps = levels.most_steps;
