@@ -371,6 +371,19 @@ TEST_F(ImportRemedies, ARepeatedPoseThatContradictsIsNamedByImportLintAndFit) {
   EXPECT_THAT(said, testing::Not(HasSubstr("the same commanded position")));
 }
 
+TEST_F(ImportRemedies, TheDirectionsOfPointsFollowFromTheOrderOfTheirList) {
+  text::write_file(folder + "/points.txt", "P1 0 0 0\nP2 100 0 0\nP3 50 20 0\n");
+  text::write_file(folder + "/list.csv", "point,X[mm],Y[mm]\nP1,0,0\nP2,100,0\nP3,50,20\n");
+  ASSERT_EQ(
+      run("vernier import tracker points.txt --nominal list.csv --machine m.xml --column 1=point --column "
+          "'2=x[mm]' --column '3=y[mm]' --column '4=z[mm]' --directions from-order -o read.csv"),
+      0)
+      << said;
+  EXPECT_THAT(text::read_file(folder + "/read.csv"),
+              testing::AllOf(HasSubstr("dirX,dirY\n"), HasSubstr("P2,100,0,0,1,0\n"),
+                             HasSubstr("P3,50,20,0,-1,1\n")));
+}
+
 TEST_F(ImportRemedies, OfATrackerReadTheFileThatIsThere) {
   text::write_file(folder + "/pts.txt", "// SA\nP1, 0.01, 400, 0\nP2, 100, 400.01, 0\nP3, 200, 400, 0.01\n");
   const std::string call =

@@ -9,8 +9,10 @@
 #include "tools/format/columns.h"
 #include "tools/import/columns/delimited.h"
 #include "tools/import/columns/point_columns.h"
+#include "tools/import/columns/sheet_wishes.h"
 #include "tools/import/logs/machine_log.h"
 #include "tools/import/logs/nominal_list.h"
+#include "tools/import/tables/order_directions.h"
 #include "tools/import/tables/survey.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
@@ -23,7 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct SurveyArguments {
-  std::string file, map, machine, separator, decimal, comment;
+  std::string file, map, machine, separator, decimal, comment, directions;
   std::vector<std::string> columns, constants, nominal_columns;
   std::size_t skip = 0, check_every = 0;
   double radius_mm = 0;
@@ -253,6 +255,14 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
                                              : "") +
                      "If a column has the position, give --column with the name of the axis; if the axis did "
                      "not move, give its position: ");
+  if (!arguments.directions.empty()) {
+    std::set<std::string> names = {"X", "Y", "Z", "A", "B", "C"};  // of an unknown machine
+    if (!arguments.machine.empty()) {
+      names.clear();
+      for (const model::Axis& axis : model::read_machine(arguments.machine).axes) names.insert(axis.name);
+    }
+    importer::add_directions_from_order(table, [&](const std::string& name) { return names.contains(name); });
+  }
   if (arguments.check_every > 0) importer::set_roles(table, arguments.check_every);
   write_survey(kind_name, arguments, survey);
 }
@@ -277,6 +287,10 @@ void add_survey_options(CLI::App& kind, const std::shared_ptr<SurveyArguments>& 
       "mark of a comment: lines that begin with this text are skipped; none: no comments; default: #");
   kind.add_flag("--header", arguments->header,
                 "the first line contains the column names (implied if --column uses a name)");
+  kind.add_option("--directions", arguments->directions,
+                  "from-order: an axis without a column of directions (dirX) has the direction of its last "
+                  "motion in the run; the rows must be in the order of the measurement")
+      ->check(CLI::IsMember({importer::kFromOrder}));
   kind.add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
       ->check(CLI::Range(2, 1000000));
   kind.add_option("--machine", arguments->machine,
