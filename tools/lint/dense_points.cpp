@@ -127,7 +127,9 @@ std::string dense_points_remedy(const DensePoints& points) {
     words +=
         ". This line measures one column of the table only: the other rows must determine the other columns "
         "at all stations, and their noise can cost more than the curve. Fit with both machine files, and "
-        "keep the dense stations only if the rms of the check rows is smaller with them";
+        "keep the dense stations only if the rms of the check rows of the other instrument is smaller with "
+        "them "
+        "(check rows that repeat the poses of this line cannot show it)";
   return words;
 }
 
