@@ -476,6 +476,16 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
     sheet.notes.push_back(
         fmt::format("{} hidden rows are read as well; delete the rows that do not belong to the table",
                     std::to_string(read.hidden_rows)));
+  if (!read.unread.empty()) {
+    constexpr std::size_t kShown = 12;  // texts
+    const std::size_t more = read.unread.size() > kShown ? read.unread.size() - kShown : 0;
+    read.unread.resize(read.unread.size() - more);
+    sheet.notes.push_back(
+        fmt::format("in the workbook, but not read: {}{}. Does one of these change values, their sign "
+                    "(--sign) or unit, or "
+                    "mean that a row does not count? Then change the file accordingly",
+                    text::joined(read.unread, ", "), more > 0 ? fmt::format(" and {} more", more) : ""));
+  }
   std::vector<std::vector<char>> is_number;
   for (std::size_t i = 0; i < read.rows.size(); ++i) {
     if (read.line[i] <= format.skip || is_remark(read.rows[i].front(), format.comment)) {

@@ -121,6 +121,7 @@ class Reader {
     if (found) {
       found->all = std::move(names);
       look_beside(*found);
+      look_at_hidden_sheets(*found);
       return std::move(*found);
     }
     if (wanted.empty() && !hidden.empty())
@@ -173,6 +174,77 @@ class Reader {
     }
   }
 
+  /// Quotes the first texts of hidden sheets: they may be an old state, or state the sign of the table.
+  void look_at_hidden_sheets(WorkbookSheet& found) const {
+    constexpr std::size_t kShown = 3;
+    for (const pugi::xml_node entry : child(workbook_.document_element(), "sheets").children()) {
+      const std::string_view state = entry.attribute("state").value();
+      const std::string name = entry.attribute("name").value();
+      if ((state != "hidden" && state != "veryHidden") || name == found.name) continue;
+      std::string text = fmt::format("the hidden sheet \"{}\"", name);
+      std::size_t shown = 0;
+      try {
+        const WorkbookSheet sheet = cells_of(entry);
+        for (std::size_t i = 0; i < sheet.rows.size(); ++i)
+          for (std::size_t k = 0; k < sheet.rows[i].size(); ++k)
+            if (!sheet.rows[i][k].empty() && sheet.is_number[i][k] == 0 && shown++ < kShown)
+              text += fmt::format("{} \"{}\"", shown == 1 ? " with" : ",", sheet.rows[i][k]);
+      } catch (const text::InputError&) {
+      }
+      found.unread.push_back(text);
+    }
+  }
+
+  /// Quotes the comments of the cells of a sheet. `part`: the file of the sheet.
+  void look_at_comments(WorkbookSheet& sheet, const std::string& part) const {
+    const std::size_t slash = part.rfind('/');
+    if (slash == std::string::npos) return;
+    const std::string name = part.substr(0, slash) + "/_rels" + part.substr(slash) + ".rels";
+    const auto relations = package_.part(name);
+    if (!relations) return;
+    pugi::xml_document document;
+    load(document, *relations, name);
+    for (const pugi::xml_node relation : document.document_element().children()) {
+      if (!std::string_view(relation.attribute("Type").value()).ends_with("/comments")) continue;
+      std::string target = relation.attribute("Target").value();
+      if (target.starts_with("../")) target = "xl/" + target.substr(3);
+      if (target.starts_with("/")) target = target.substr(1);
+      const auto text = package_.part(target);
+      if (!text) continue;
+      pugi::xml_document comments;
+      load(comments, *text, target);
+      for (const pugi::xml_node one : child(comments.document_element(), "commentList").children())
+        if (const std::string words = text::trimmed(text_of(child(one, "text"))); !words.empty())
+          sheet.unread.push_back(
+              fmt::format("the comment of cell {} \"{}\"", one.attribute("ref").value(), words));
+    }
+  }
+
+  /// Quotes the printed headers and footers of a sheet with a text beside codes (&P is the page).
+  static void look_at_printed_header(WorkbookSheet& sheet, const pugi::xml_node& root) {
+    for (const pugi::xml_node one : child(root, "headerFooter").children()) {
+      const std::string_view code = one.text().get();
+      std::string text;
+      for (std::size_t at = 0; at < code.size(); ++at) {
+        if (code[at] != '&' || at + 1 == code.size()) {
+          text += code[at];
+        } else if (code[++at] == '"') {  // the name of a font
+          at = std::min(code.find('"', at + 1), code.size());
+        } else {
+          text += ' ';
+        }
+      }
+      std::string other;  // words that are no number of a page
+      for (const std::string& word : text::words_in(text, " \t\n/"))
+        if (word.size() > 1 && word != "Seite" && word != "Page" && word != "von" && word != "of")
+          other += word;
+      if (!other.empty())
+        sheet.unread.push_back(fmt::format("the printed {} \"{}\"",
+                                           local(one).ends_with("Header") ? "header" : "footer",
+                                           text::trimmed(text)));
+    }
+  }
+
   void load(pugi::xml_document& document, const std::string& text, const std::string& name) const {
     const auto result =
         document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_ws_pcdata);
@@ -191,11 +263,23 @@ class Reader {
     std::map<unsigned, std::string> formats;
     for (const pugi::xml_node format : child(document.document_element(), "numFmts").children())
       formats[format.attribute("numFmtId").as_uint()] = format.attribute("formatCode").value();
+    std::vector<bool> struck;  // for each font
+    for (const pugi::xml_node font : child(document.document_element(), "fonts").children()) {
+      const pugi::xml_node strike = child(font, "strike");
+      struck.push_back(strike && strike.attribute("val").as_bool(true));
+    }
     for (const pugi::xml_node style : child(document.document_element(), "cellXfs").children()) {
+      const auto font = static_cast<std::size_t>(style.attribute("fontId").as_uint());
+      is_struck_.push_back(font < struck.size() && struck[font]);
       const unsigned id = style.attribute("numFmtId").as_uint();
       const auto own = formats.find(id);
       is_date_.push_back(own == formats.end() ? is_date_format(id) : is_date_format(own->second));
     }
+  }
+
+  bool is_struck(const pugi::xml_node& cell) const {
+    const auto style = static_cast<std::size_t>(cell.attribute("s").as_uint());
+    return style < is_struck_.size() && is_struck_[style];
   }
 
   bool shows_date(const pugi::xml_node& cell) const {
@@ -223,7 +307,10 @@ class Reader {
     WorkbookSheet sheet;
     sheet.name = entry.attribute("name").value();
     pugi::xml_document document;
-    read_part(part_of(entry), document);
+    const std::string part = part_of(entry);
+    read_part(part, document);
+    look_at_comments(sheet, part);
+    look_at_printed_header(sheet, document.document_element());
     std::size_t row_number = 0, filled = 0, empty = 0;
     for (const pugi::xml_node row : child(document.document_element(), "sheetData").children()) {
       sheet.hidden_rows += row.attribute("hidden").as_bool() ? 1 : 0;
@@ -258,6 +345,9 @@ class Reader {
         ++filled;
         cells[column] = value;
         numbers[column] = is_number(cell) ? 1 : 0;
+        if (is_struck(cell))
+          sheet.unread.push_back(
+              fmt::format("the struck-out cell {} \"{}\"", cell.attribute("r").value(), value));
         any = true;
       }
       if (!any) continue;
@@ -360,7 +450,7 @@ class Reader {
   Package package_;
   pugi::xml_document workbook_;
   std::vector<std::string> strings_;
-  std::vector<bool> is_date_;  // of each cell style
+  std::vector<bool> is_date_, is_struck_;  // of each cell style
   bool from_1904_ = false;
 };
 

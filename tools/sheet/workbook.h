@@ -28,6 +28,8 @@ struct WorkbookSheet {
                                                // are included in `rows`
   std::vector<TextElsewhere> elsewhere;        // texts on the other visible sheets
   std::vector<std::string> tables_beside;      // names of the other visible sheets with rows of numbers
+  std::vector<std::string> unread;             // what no cell shows, in words: comments of cells, texts on
+                                               // hidden sheets, a printed header, numbers struck out
 };
 
 /// Reads the sheet with this name or number (from 1) from a workbook. If `sheet` is empty, the first visible

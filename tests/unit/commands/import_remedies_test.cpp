@@ -280,6 +280,13 @@ TEST_F(ImportRemedies, OfALogNameThePositionThatTheControlComputed) {
   EXPECT_THAT(remedy(),
               HasSubstr("own.xml --column \"x[mm]=X\" --column \"y[mm]=Y\" --column \"z[mm]=Z\" -o"));
   ASSERT_EQ(run(remedy()), 0) << said;
+  // A point with its units is named as computed too.
+  text::write_file(folder + "/log.csv",
+                   log_and_list("Name;turret [deg];elbow [deg];X [mm];Y [mm];Z [mm]", 1).log);
+  ASSERT_EQ(run(call), 1) << said;
+  EXPECT_THAT(said, HasSubstr("the control probably computed it from the joints, and it is no measurement"));
+  EXPECT_THAT(remedy(), HasSubstr("--column \"x=X [mm]\" --column \"y=Y [mm]\" --column \"z=Z [mm]\" -o"));
+  ASSERT_EQ(run(remedy()), 0) << said;
   // A point that differs from the nominal machine can be measured.
   std::string measured = log_and_list("Name;turret [deg];elbow [deg];X;Y;Z", 1).log;
   for (std::size_t row = 0, place = 0; (place = measured.find(";0.000\n", place)) != std::string::npos; ++row)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/sheet/workbook.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zip.h>
 
@@ -32,7 +33,8 @@ std::string refusal(const std::string& bytes, const std::string& sheet) {
 /// A workbook of one sheet with these texts and rows.
 /// second: the rows of a further sheet T. state: further attributes of the first sheet, if there are two.
 std::string workbook_of(const std::string& strings, const std::string& rows, const std::string& styles = "",
-                        const std::string& second = "", const std::string& state = "") {
+                        const std::string& second = "", const std::string& state = "",
+                        const std::map<std::string, std::string>& more = {}) {
   std::map<std::string, std::string> parts = {
       {"xl/workbook.xml",
        "<workbook><sheets><sheet name=\"S\" sheetId=\"1\" r:id=\"rId1\"/></sheets></workbook>"},
@@ -48,6 +50,7 @@ std::string workbook_of(const std::string& strings, const std::string& rows, con
         "Id=\"rId2\" Target=\"worksheets/sheet2.xml\"/></Relationships>";
     parts["xl/worksheets/sheet2.xml"] = "<worksheet><sheetData>" + second + "</sheetData></worksheet>";
   }
+  for (const auto& [name, text] : more) parts[name] = text;
   if (!styles.empty()) parts["xl/styles.xml"] = "<styleSheet>" + styles + "</styleSheet>";
   zip_error_t error;
   zip_error_init(&error);
@@ -102,6 +105,33 @@ TEST(Workbook, NumbersStoredAsTextMakeATableToo) {
 
 const std::string kRowsOfNumbers =
     "<row r=\"1\"><c><v>1</v></c><c><v>2</v></c></row><row r=\"2\"><c><v>3</v></c><c><v>4</v></c></row>";
+
+TEST(Workbook, WhatNoCellShowsIsQuoted) {
+  const std::string hidden = "<row><c t=\"inlineStr\"><is><t>Soll - Ist</t></is></c><c><v>7</v></c></row>";
+  EXPECT_THAT(
+      read_workbook(workbook_of("", hidden, "", kRowsOfNumbers, "state=\"hidden\""), "b.xlsx", "").unread,
+      testing::ElementsAre("the hidden sheet \"S\" with \"Soll - Ist\""));
+  const std::string styles =
+      "<fonts><font/><font><strike/></font></fonts><cellXfs><xf fontId=\"0\"/><xf fontId=\"1\"/></cellXfs>";
+  const std::string struck = "<row r=\"3\"><c r=\"A3\" s=\"1\"><v>5</v></c><c><v>6</v></c></row>";
+  const std::map<std::string, std::string> comment = {
+      {"xl/worksheets/_rels/sheet1.xml.rels",
+       "<Relationships><Relationship Id=\"rId1\" Type=\"http://x/relationships/comments\" "
+       "Target=\"../comments1.xml\"/></Relationships>"},
+      {"xl/comments1.xml",
+       "<comments><commentList><comment ref=\"B1\"><text><r><t>Werte zehnfach</t></r></text></comment>"
+       "</commentList></comments>"}};
+  EXPECT_THAT(
+      read_workbook(workbook_of("", kRowsOfNumbers + struck, styles, "", "", comment), "b.xlsx", "").unread,
+      testing::ElementsAre("the comment of cell B1 \"Werte zehnfach\"", "the struck-out cell A3 \"5\""));
+  const std::string header =
+      kRowsOfNumbers +
+      "</sheetData><headerFooter><oddHeader>&amp;CSoll - Ist</oddHeader><oddFooter>Seite "
+      "&amp;P von &amp;N</oddFooter></headerFooter><sheetData>";
+  EXPECT_THAT(read_workbook(workbook_of("", header), "b.xlsx", "").unread,
+              testing::ElementsAre("the printed header \"Soll - Ist\""));
+  EXPECT_THAT(read_workbook(workbook_of("", kRowsOfNumbers), "b.xlsx", "").unread, testing::IsEmpty());
+}
 
 TEST(Workbook, AHiddenSheetIsReadOnlyByItsName) {
   const std::string both = workbook_of("", kRowsOfNumbers, "", kRowsOfNumbers, "state=\"hidden\"");

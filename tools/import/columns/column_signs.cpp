@@ -21,10 +21,11 @@ struct SignText {
   SignSaid said = SignSaid::kNothing;
   std::size_t line = 0;
   std::string text;
+  bool in_row = false;
 
-  void add(SignSaid sign, std::size_t at, const std::string& words) {
+  void add(SignSaid sign, std::size_t at, const std::string& words, bool of_row = false) {
     const SignSaid both = both_signs(said, sign);
-    if (both != said) *this = {both, at, words};
+    if (both != said) *this = {both, at, words, of_row};
   }
 };
 
@@ -33,10 +34,12 @@ SignText sign_of_texts(const sheet::Sheet& sheet, const sheet::SheetTable& table
   SignText found;
   for (const TableText& one : texts_about(sheet, table)) {
     SignSaid said = sign_said(one.text, SignPlace::kTitle, travel);
+    if (said == SignSaid::kUnclear && says_sign_is_usual(one.text)) continue;
     // No rule reads the text, and its words may be about the sign. A remark of one row is about this row.
-    if (said == SignSaid::kNothing && !one.in_row && may_state(one.text, Doubtful::kSign))
+    if (said == SignSaid::kNothing && !one.in_row && may_state(one.text, Doubtful::kSign) &&
+        !says_sign_is_usual(one.text))
       said = SignSaid::kUnclear;
-    found.add(said, one.line, one.quoted());
+    found.add(said, one.line, one.quoted(), one.in_row);
   }
   return found;
 }
@@ -63,6 +66,25 @@ Travel travel_of(const sheet::Sheet& sheet, const sheet::SheetTable& table,
   return below ? Travel::kNegative : Travel::kPositive;
 }
 
+/// The sign of one column of deviations: by its heading, or by the texts.
+void settle_sign(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t k,
+                 SheetColumn& column, const SignText& texts, Travel travel) {
+  const sheet::Heading& heading = table.headings[k];
+  SignText sign;
+  sign.add(sign_said(heading.text, SignPlace::kHeading, travel), sheet.line[table.heading_row], heading.text);
+  if (sign.said == SignSaid::kNothing && names_correction(heading))
+    sign.said = SignSaid::kNominalLessActual;  // the titles are about deviations
+  else if (sign.said == SignSaid::kNothing || sign.said == SignSaid::kUnclear ||
+           texts.said != SignSaid::kUnclear)  // a clear heading outranks a doubtful text, which is quoted
+    sign.add(texts.said, texts.line, texts.text, texts.in_row);
+  if (sign.said != SignSaid::kNothing && sign.text == texts.text) column.sign_from = texts.text;
+  column.turned = sign.said == SignSaid::kNominalLessActual;
+  if (sign.said != SignSaid::kUnclear) return;
+  column.sign_place = {sheet.file, sign.line};
+  column.sign_text = sign.text;
+  column.sign_of_row = sign.in_row;
+}
+
 }  // namespace
 
 void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
@@ -78,20 +100,13 @@ void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
     const Travel travel = travel_of(sheet, table, columns, column, wishes.constants);
     if (!of_travel.contains(travel)) of_travel[travel] = sign_of_texts(sheet, table, travel);
     const SignText& texts = of_travel[travel];
-    const sheet::Heading& heading = table.headings[k];
-    SignText sign;
-    sign.add(sign_said(heading.text, SignPlace::kHeading, travel), sheet.line[table.heading_row],
-             heading.text);
-    if (sign.said == SignSaid::kNothing && names_correction(heading))
-      sign.said = SignSaid::kNominalLessActual;  // the titles are about deviations
-    else
-      sign.add(texts.said, texts.line, texts.text);
-    if (sign.said != SignSaid::kNothing && sign.text == texts.text) column.sign_from = texts.text;
-    column.turned = sign.said == SignSaid::kNominalLessActual;
-    if (sign.said != SignSaid::kUnclear) continue;
-    column.sign_place = {sheet.file, sign.line};
-    column.sign_text = sign.text;
+    settle_sign(sheet, table, k, column, texts, travel);
   }
+}
+
+void settle_sign_of_lengths(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t k,
+                            SheetColumn& column) {
+  settle_sign(sheet, table, k, column, sign_of_texts(sheet, table, Travel::kPositive), Travel::kPositive);
 }
 
 }  // namespace vernier::importer

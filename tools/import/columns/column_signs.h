@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <cstddef>
 #include <vector>
 
 #include "tools/import/columns/sheet_wishes.h"
@@ -12,5 +13,9 @@ namespace vernier::importer {
 /// file for all deviations. A text that is not clear is stored in the column (`sign_text`).
 void settle_signs(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                   std::vector<SheetColumn>& columns, const SheetWishes& wishes);
+
+/// Determines the sign of the deviations of lengths in column `k`, by its heading or another text.
+void settle_sign_of_lengths(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t k,
+                            SheetColumn& column);
 
 }  // namespace vernier::importer

@@ -26,6 +26,7 @@ struct SheetColumn {
   bool by_values = false;  // true: the values determined whether the column is a position or a deviation
   text::Place sign_place = {};   // place of a text that states the sign of this deviation, but not clearly
   std::string sign_text = {};    // this text; empty: the sign is clear
+  bool sign_of_row = false;      // true: this text is a remark of some rows
   text::Place doubt_place = {};  // place of a value that contradicts the unit or the direction of this column
   std::string doubt_word = {}, doubt = {};  // this word, and why the table is refused; empty: no doubt
   std::string unit_from = {};  // title that states the unit of this deviation; empty: no title does

@@ -10,8 +10,8 @@
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/import/columns/column_guess.h"
+#include "tools/import/columns/column_signs.h"
 #include "tools/import/words/sheet_words.h"
-#include "tools/import/words/sign_words.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/words.h"
 
@@ -59,7 +59,7 @@ Says said_by(const sheet::Heading& heading) {
   if (names_statistic(heading)) return Says::kMean;
   if (any(says_uncertainty)) return Says::kUncertainty;
   const bool nominal = any(says_nominal), measured = any(says_measured);
-  if (any(says_deviation) || (nominal && measured)) return Says::kDeviation;
+  if (any(says_deviation) || names_correction(heading) || (nominal && measured)) return Says::kDeviation;
   if (nominal) return Says::kNominal;
   return any(says_length) ? Says::kMeasured : Says::kNothing;
 }
@@ -107,18 +107,6 @@ SheetColumn column_of(const std::string& name, const std::string& unit, const st
   return column;
 }
 
-/// The sign of a deviation, by its heading and the titles. A sign that no text states clearly is a doubt.
-void settle_sign(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t k,
-                 SheetColumn& column) {
-  SignSaid said = sign_said(table.headings[k].text, SignPlace::kHeading);
-  if (table.has_headings)
-    for (const std::string& title : title_cells(sheet, table))
-      said = both_signs(said, sign_said(title, SignPlace::kTitle));
-  column.turned = said == SignSaid::kNominalLessActual;
-  if (said != SignSaid::kUnclear) return;
-  column.sign_text = table.headings[k].text;
-}
-
 std::string names_of(const sheet::SheetTable& table, const std::vector<std::size_t>& list) {
   std::string names;
   for (const std::size_t k : list) names += (names.empty() ? "\"" : ", \"") + table.headings[k].text + "\"";
@@ -141,6 +129,7 @@ std::vector<SheetColumn> distance_columns(const sheet::Sheet& sheet, const sheet
     if (const auto wish = as_given(table, wishes, k); wish && k != pairs.column) {
       column = *wish;
       if (column.unit.empty() && column.use == SheetColumn::Use::kColumn) column.unit = unit;
+      if (column.name == kDeviationName) settle_sign_of_lengths(sheet, table, k, column);
       given |= column.name == columns::kDistance || column.name == kDeviationName;
       continue;
     }
@@ -198,7 +187,7 @@ std::vector<SheetColumn> distance_columns(const sheet::Sheet& sheet, const sheet
     leave(unknown, "not the measured distance");
     if (given) leave(measured, "not the measured distance");
   } else if (!deviations.empty()) {
-    for (const std::size_t k : deviations) settle_sign(sheet, table, k, result[k]);
+    for (const std::size_t k : deviations) settle_sign_of_lengths(sheet, table, k, result[k]);
     leave(means, "computed from the readings");
     leave(unknown, "not a deviation");
     measured = deviations;

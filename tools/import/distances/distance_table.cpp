@@ -293,7 +293,7 @@ class Maker {
     }
     if (!measured && deviation && !wishes_.turned && !columns_[*deviation].sign_text.empty())
       throw text::InputError(
-          heading(), table_.headings[*deviation].text,
+          heading(), columns_[*deviation].sign_text,
           "the sign of these deviations is not clear: give --sign actual-nominal or --sign "
           "nominal-actual");
     for (std::size_t row = table_.first_data; row < sheet_.rows.size(); ++row) {

@@ -19,17 +19,18 @@ namespace {
 
 using LogColumns = std::vector<RobotLog::Column>;
 
-/// Columns x, y, z in any letters, without a unit in the heading or by an option, that are no axis of the
-/// machine: the point in mm. Empty without all three.
-LogColumns point_without_units(const model::Machine& machine, const SheetReading& reading) {
+/// Columns x, y, z in any letters that are no axis of the machine and no reading: the point that the control
+/// shows, in mm without a unit in the heading. Empty without all three.
+LogColumns point_of_control(const model::Machine& machine, const SheetReading& reading) {
   LogColumns point;
   for (const char* const axis : {"X", "Y", "Z"})
     for (std::size_t k = 0; k < reading.columns.size(); ++k) {
       const sheet::Heading& heading = reading.table.headings[k];
-      if (text::in_small_letters(heading.name) != reading_of(axis) || !heading.unit.empty() ||
+      const bool reads = !heading.unit.empty() && reading.columns[k].name == reading_of(axis);
+      if (text::in_small_letters(heading.name) != reading_of(axis) || reads ||
           reading.columns[k].why != "by its heading" || machine.find_axis(heading.name))
         continue;
-      point.push_back({k, *reading_of(axis), "mm"});
+      point.push_back({k, *reading_of(axis), heading.unit.empty() ? "mm" : heading.unit});
       break;
     }
   return point.size() == std::size(format::columns::kPoint) ? point : LogColumns{};
@@ -95,7 +96,7 @@ std::optional<RobotLog> robot_log(const model::Machine& machine, const SheetRead
   constexpr double kComputed_mm = 0.05;
   if (!is_robot(machine)) return std::nullopt;
   const bool named = open_axes(machine, reading).axes.empty();
-  const LogColumns point = point_without_units(machine, reading);
+  const LogColumns point = point_of_control(machine, reading);
   if (named && has_coordinate(reading)) return std::nullopt;
   RobotLog log;
   bool sure = true, units = true;
@@ -121,14 +122,19 @@ std::optional<RobotLog> robot_log(const model::Machine& machine, const SheetRead
   if (units && !point.empty() && !reading.wishes.unit.empty()) return std::nullopt;
   if (point.empty() && has_other_numbers(machine, reading, log.columns)) return std::nullopt;
   log.columns.insert(log.columns.end(), point.begin(), point.end());
-  for (const RobotLog::Column& one : point)
-    log.point.push_back(
-        fmt::format("{}[{}]={}", one.name, one.unit, reading.table.headings[one.column].text));
+  bool point_units = true;
+  for (const RobotLog::Column& one : point) {
+    const sheet::Heading& heading = reading.table.headings[one.column];
+    point_units = point_units && !heading.unit.empty();
+    log.point.push_back(heading.unit.empty() ? fmt::format("{}[{}]={}", one.name, one.unit, heading.text)
+                                             : fmt::format("{}={}", one.name, heading.text));
+  }
   log.missing = fmt::format("{}{}",
                             point.empty() ? "the table has the positions of the axes and no reading"
+                            : point_units ? "the point of the table is no reading by its headings"
                                           : "the columns of the point have no unit",
                             sure ? "" : ", and no column has the name of an axis of the machine");
-  log.condition = "the point is in mm";
+  log.condition = point_units ? "its unit is that of the headings" : "the point is in mm";
   if (!sure) log.condition += ", and the joints are the axes in the order of the machine file";
   if (!units)
     log.condition += std::string(sure ? ", and the joints are" : " and") + " in the units of this assignment";

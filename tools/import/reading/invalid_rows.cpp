@@ -94,20 +94,67 @@ std::vector<std::size_t> columns_named(const sheet::SheetTable& table, const std
 }
 
 /// What the cells of a column state by its heading: "Valid" with yes and no, "ungültig" with a mark.
-enum class Flags { kNone, kOfValid, kOfInvalid };
+enum class Flags { kNone, kOfValid, kOfInvalid, kOfState, kMarkOfValid };
+
+Flags flags_of_heading(const sheet::Heading& heading) {
+  static const WordSet kValid = {"valid",     "gültig", "gueltig",  "valide",    "verwenden",
+                                 "verwendet", "use",    "used",     "auswerten", "berücksichtigen",
+                                 "include",   "usable", "included", "brauchbar", "werten"};
+  static const WordSet kInvalid = {"invalid", "ungültig", "ungueltig", "rejected",  "verworfen",
+                                   "exclude", "excluded", "ignore",    "ignorieren"};
+  static const WordSet kNot = {"nicht", "not"};
+  static const WordSet kBeside = {"messung", "messwert",    "wert", "werte", "reading", "row",  "zeile",
+                                  "punkt",   "measurement", "ist",  "is",    "point",   "value"};
+  bool valid = false, invalid = false, negated = false;
+  for (const std::string& word : plain_words(heading.text)) {
+    valid |= kValid.contains(word);
+    invalid |= kInvalid.contains(word);
+    negated |= kNot.contains(word);
+    if (!kValid.contains(word) && !kInvalid.contains(word) && !kNot.contains(word) && !kBeside.contains(word))
+      return Flags::kNone;
+  }
+  if (valid == invalid) return Flags::kNone;
+  return valid != negated ? Flags::kOfValid : Flags::kOfInvalid;
+}
+
+/// A column "gültig" with x in most rows, and nothing in the others.
+bool has_marks_alone(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
+  static const WordSet kMarks = {"x", "✓"};
+  std::size_t marks = 0, empty = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    if (sheet::is_blank(sheet.rows[row])) continue;
+    const std::string cell = text::in_small_letters(sheet.rows[row][column]);
+    if (!cell.empty() && !kMarks.contains(cell)) return false;
+    ++(cell.empty() ? empty : marks);
+  }
+  return empty > 0 && marks > empty;
+}
+
+const WordSet kStatesOfFault = {"err", "error", "fehler", "fault", "störung", "invalid", "ungültig"};
+
+/// A column "Status" with OK or a fault of the instrument in each row.
+bool is_state_of_instrument(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
+  static const WordSet kHeadings = {"status", "state", "zustand", "messstatus", "quality", "qualität"};
+  static const WordSet kGood = {"ok", "okay", "valid", "gültig", "good", "gut"};
+  const std::vector<std::string> heading = plain_words(table.headings[column].text);
+  if (heading.size() != 1 || !kHeadings.contains(heading[0])) return false;
+  bool good = false;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const std::string cell = text::in_small_letters(sheet.rows[row][column]);
+    good |= kGood.contains(cell);
+    if (!cell.empty() && !kGood.contains(cell) && !kStatesOfFault.contains(cell)) return false;
+  }
+  return good;
+}
 
 Flags flags_of(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t column) {
-  static const WordSet kValid = {"valid", "gültig", "gueltig", "valid?", "gültig?", "valide"};
-  static const WordSet kInvalid = {"invalid",   "ungültig", "ungueltig", "invalid?",
-                                   "ungültig?", "rejected", "verworfen"};
   static const WordSet kAnswers = {"",  "yes",  "no", "ja", "nein",  "oui", "non", "y", "n",
                                    "j", "true", "0",  "1",  "false", "x",   "✓",   "-"};
-  const std::string name = text::in_small_letters(table.headings[column].name);
-  const Flags flags = kValid.contains(name)     ? Flags::kOfValid
-                      : kInvalid.contains(name) ? Flags::kOfInvalid
-                                                : Flags::kNone;
+  Flags flags = flags_of_heading(table.headings[column]);
+  if (flags == Flags::kNone && is_state_of_instrument(sheet, table, column)) return Flags::kOfState;
   for (std::size_t row = table.first_data; flags != Flags::kNone && row < sheet.rows.size(); ++row)
     if (!kAnswers.contains(text::in_small_letters(sheet.rows[row][column]))) return Flags::kNone;
+  if (flags == Flags::kOfValid && has_marks_alone(sheet, table, column)) return Flags::kMarkOfValid;
   return flags;
 }
 
@@ -115,6 +162,8 @@ bool flag_says_invalid(Flags flags, const std::string& cell) {
   static const WordSet kNo = {"no", "nein", "non", "n", "false", "0"};
   static const WordSet kNoMark = {"", "-"};
   const std::string small = text::in_small_letters(cell);
+  if (flags == Flags::kOfState) return kStatesOfFault.contains(small);
+  if (flags == Flags::kMarkOfValid) return cell.empty();
   if (flags == Flags::kOfValid) return kNo.contains(small);
   return flags == Flags::kOfInvalid && !kNo.contains(small) && !kNoMark.contains(small);
 }
@@ -149,7 +198,7 @@ void leave_invalid_rows(sheet::Sheet& sheet, const sheet::SheetTable& table) {
     flags.push_back(flags_of(sheet, table, k));
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
     const std::vector<std::string>& cells = sheet.rows[row];
-    for (std::size_t k = 0; k < cells.size(); ++k) {
+    for (std::size_t k = 0; k < cells.size() && !sheet::is_blank(cells); ++k) {
       const bool flagged = k < flags.size() && flag_says_invalid(flags[k], cells[k]);
       if (!flagged && !says_invalid(cells[k])) continue;
       if (!flagged && is_about_another_reading(cells[k])) {
@@ -164,7 +213,9 @@ void leave_invalid_rows(sheet::Sheet& sheet, const sheet::SheetTable& table) {
         empty_cells(sheet, table, row, k, columns);
         break;
       }
-      invalid.emplace_back(row, flagged ? table.headings[k].name + ": " + cells[k] : cells[k]);
+      invalid.emplace_back(
+          row,
+          flagged ? table.headings[k].name + ": " + (cells[k].empty() ? "no mark" : cells[k]) : cells[k]);
       break;
     }
   }

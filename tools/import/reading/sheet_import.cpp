@@ -9,6 +9,7 @@
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
 #include "tools/import/columns/column_guess.h"
+#include "tools/import/columns/columns_beside.h"
 #include "tools/import/columns/signed_positions.h"
 #include "tools/import/columns/stated_order.h"
 #include "tools/import/columns/values_beside.h"
@@ -306,8 +307,9 @@ void note_signs(SheetReading& reading) {
   std::set<std::string> noted;
   bool deviations = false;
   for (const SheetColumn& column : reading.columns) {
-    if (column.use != SheetColumn::Use::kDeviation) continue;
-    deviations = true;
+    const bool deviation = column.use == SheetColumn::Use::kDeviation;
+    if (!deviation && column.sign_from.empty()) continue;  // a deviation of a length states it too
+    deviations |= deviation;
     if (!column.sign_text.empty()) continue;  // the table is refused
     if (column.sign_from.empty() || !noted.insert(column.sign_from).second) continue;
     reading.sheet.notes.push_back(
@@ -436,6 +438,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   settle_uncertainties(result.sheet, result.table, named);
   if (pairs) {
     read_distances(result, *pairs, words);
+    note_signs(result);
     note_unused_texts(result.sheet, written, texts, result.columns);
     return result;
   }
@@ -486,6 +489,8 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   judge_sizes(result, words.found);
   note_exchanged_headings(result.sheet, result.table, result.columns);
   note_unused_texts(result.sheet, written, texts, result.columns);
+  note_heading_words(result.sheet, written, result.table, result.columns, result.wishes, words.found);
+  note_columns_beside(result.sheet, result.table, result.columns, result.wishes);
   if (result.wishes.directions_from_order)
     result.sheet.notes.push_back(
         "an axis without a column of directions has the direction of its last motion in the run (0: before "

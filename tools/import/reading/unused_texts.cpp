@@ -12,6 +12,7 @@
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/words/doubtful_words.h"
 #include "tools/import/words/sheet_words.h"
+#include "tools/import/words/unread_words.h"
 #include "tools/text/words.h"
 
 namespace vernier::importer {
@@ -28,8 +29,9 @@ const char* advice_of(Doubtful subject) {
       return "may state that a number was added to the values or taken from them, and the values are read as "
              "they are written: if so, subtract (or add) the number in the file, and delete this text";
     case Doubtful::kInvalid:
-      return "may state that readings are not valid, and all of them are read: if so, delete their rows (or "
-             "the column of their run) in the file, or write ungültig into a column Bemerkung of these rows";
+      return "may state that readings are not valid, and none are left out because of it: if so, delete "
+             "their rows (or the column of their run) in the file, or write ungültig into a column Bemerkung "
+             "of these rows";
     case Doubtful::kZero:
       return "may state another zero point, and positions and values are read as they are written: if the "
              "positions are not those of the machine, add the distance of the two zero points to them in the "
@@ -70,20 +72,52 @@ std::string quoted_text(const TableText& text) {
   return fmt::format("{}the text \"{}\"", at, text.quoted());
 }
 
+/// True if a note quotes a cell of this line.
+bool is_partly_used(const sheet::Sheet& sheet, const std::vector<TableText>& texts, const TableText& line) {
+  return std::any_of(texts.begin(), texts.end(), [&](const TableText& cell) {
+    return cell.line == line.line && line.text.find(cell.text) != std::string::npos &&
+           is_used(sheet, cell.text);
+  });
+}
+
+/// True for a short text of a cover sheet with a word that names a fact about the measurement ("Maschine",
+/// "Datum der Messung"), or with a number ("Portal 4", "XL-80").
+bool is_label_of_cover(const std::string& text) {
+  static const std::set<std::string> kLabels = {
+      "maschine",   "machine",      "datum",         "date",      "prüfer",  "operator",   "kunde",
+      "customer",   "seriennummer", "serial",        "auftrag",   "order",   "firma",      "company",
+      "temperatur", "temperature",  "achse",         "axis",      "laser",   "gerät",      "device",
+      "instrument", "messgerät",    "bediener",      "ort",       "place",   "halle",      "protokoll",
+      "report",     "deckblatt",    "messprotokoll", "steuerung", "control", "hersteller", "manufacturer",
+      "typ",        "type",         "nummer",        "number",    "projekt", "project",    "abteilung",
+      "messung",    "measurement",  "standort",      "location",  "name",    "luftdruck",  "luftfeuchte"};
+  constexpr std::size_t kSentence = 3;  // words
+  const std::vector<std::string> words = plain_words(text);
+  if (words.size() >= kSentence) return false;
+  return std::any_of(words.begin(), words.end(), [](const std::string& word) {
+    return kLabels.contains(word) || word.find_first_of("0123456789") != std::string::npos;
+  });
+}
+
 /// One note with all texts that no other note quotes: no list of words is complete.
 void note_other_texts(sheet::Sheet& sheet, const sheet::SheetTable& table,
                       const std::vector<TableText>& texts, const std::vector<SheetColumn>& columns) {
-  constexpr std::size_t kShown = 12;    // texts; a protocol has about ten lines
-  constexpr std::size_t kSentence = 3;  // words; "Portal 4" has fewer
+  constexpr std::size_t kShown = 12;  // texts; a protocol has about ten lines
+  std::vector<TableText> all = texts;
+  if (sheet.workbook && is_telling_name(sheet.sheet) && !is_used(sheet, sheet.sheet))
+    all.push_back({0, "name of the sheet: " + sheet.sheet});
   std::vector<const TableText*> left;
-  for (const TableText& one : texts) {
-    const bool again = std::any_of(left.begin(), left.end(), [&](const TableText* other) {
-      // A line is also one text for each of its cells.
-      return other->quoted() == one.quoted() ||
-             (other->line == one.line && one.line > 0 && other->text.find(one.text) != std::string::npos);
-    });
+  for (const TableText& one : all) {
+    // A line is also one text for each of its cells: the line is quoted, or the cells that no note quotes.
+    bool again = std::any_of(left.begin(), left.end(),
+                             [&](const TableText* other) { return other->quoted() == one.quoted(); });
+    for (const TableText& other : all) {
+      if (other.line == 0 || other.line != one.line || other.text == one.text) continue;
+      again |= one.text.find(other.text) != std::string::npos && is_used(sheet, other.text);
+      again |= other.text.find(one.text) != std::string::npos && !is_partly_used(sheet, all, other);
+    }
     // The labels of a cover sheet ("Maschine"), and an upper line of headings, are no sentences.
-    const bool label = one.line == 0 && plain_words(one.text).size() < kSentence;
+    const bool label = one.line == 0 && is_label_of_cover(one.text);
     const bool heading = table.upper_row && one.line == sheet.line[*table.upper_row];
     const bool refused = std::any_of(columns.begin(), columns.end(), [&](const SheetColumn& column) {
       return column.sign_text == one.text || column.sign_text == one.quoted();
@@ -144,12 +178,16 @@ void note_unused_texts(sheet::Sheet& sheet, const sheet::SheetTable& table,
     }
     const auto [word, unit] =
         one.in_row ? std::pair<std::string, std::string>() : unit_against_headings(one.text, table);
-    if (unit.empty() || (one.line > 0 && !of_line.emplace(one.line, Doubtful::kUnits).second)) continue;
+    const bool is_read = std::any_of(columns.begin(), columns.end(), [&, symbol = unit](const auto& column) {
+      return column.use != SheetColumn::Use::kLeft && column.unit == symbol;
+    });  // the unit of a title
+    if (unit.empty() || is_read || (one.line > 0 && !of_line.emplace(one.line, Doubtful::kUnits).second))
+      continue;
     notes.push_back(
         fmt::format("{} names the unit \"{}\", and no column is read with it: if the values of a column have "
                     "this unit, write "
-                    "[{}] in place of the unit in its heading, or give --column \"NAME[{}]=HEADING\" "
-                    "(deviations: --deviation)",
+                    "[{}] in place of the unit in its heading (to a heading without a unit: --column "
+                    "\"NAME[{}]=HEADING\", for deviations --deviation)",
                     quoted_text(one), word, unit, unit));
   }
   sheet.notes.insert(sheet.notes.end(), notes.begin(), notes.end());

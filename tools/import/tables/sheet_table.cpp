@@ -202,9 +202,14 @@ void refuse_readings_without_position(const ImportTable& table, const Guess& gue
 void refuse_unclear_signs(const std::vector<SheetColumn>& columns) {
   for (const SheetColumn& column : columns)
     if (column.use == SheetColumn::Use::kDeviation && !column.sign_text.empty())
-      throw text::InputError(column.sign_place, column.sign_text,
-                             "this text does not state clearly whether the deviations are actual - nominal "
-                             "or nominal - actual: give --sign actual-nominal or --sign nominal-actual");
+      throw text::InputError(
+          column.sign_place, column.sign_text,
+          column.sign_of_row ? "this remark of a row may state that the sign of the deviations changes "
+                               "here: reverse the sign of these values in the file, and delete the remark; "
+                               "if it is about all rows, give --sign actual-nominal or --sign "
+                               "nominal-actual"
+                             : "this text does not state clearly whether the deviations are actual - nominal "
+                               "or nominal - actual: give --sign actual-nominal or --sign nominal-actual");
 }
 
 /// Refuses columns whose values contradict their unit or their direction.

@@ -40,6 +40,10 @@ const std::string kMeaning =
     "count|gezähl|zähl|weit|kurz|wenig|=viel|overtravel|undertravel|overshoot|undershoot|short|=far|behind|"
     "beyond|past|hinter|ahead|towards|away";
 
+const std::string kToAdd =
+    "to~be~added|be~added|must~add|to~add|to~be~subtracted|be~subtracted|hinzuzufüg|zu~addieren|abzuzieh|"
+    "zu~subtrah";
+
 // The one list of words. A note is soft: a rule with one group names words that protocols hardly use
 // otherwise.
 const std::vector<DoubtRule>& rules() {
@@ -61,10 +65,11 @@ const std::vector<DoubtRule>& rules() {
       {D::kSign,
        "korrekturwert|kompensationswert|ausgleichswert|kompensationstab|korrekturtab|kompensationsdat|"
        "korrekturdat|correction~val|correction~tab|correction~data|compensation~val|compensation~tab|"
-       "compensation~data|aufzuschalt|=korrekturen|=corrections|to~be~added|be~added|must~add|to~add|to~be~"
-       "subtracted|be~subtracted|hinzuzufüg|zu~addieren|abzuzieh|zu~subtrah|einzugeben|to~be~entered|"
-       "gegenzusteuer",
-       kOfState.substr(1)},
+       "compensation~data|aufzuschalt|=korrekturen|=corrections|einzugeben|to~be~entered|gegenzusteuer",
+       kOfState.substr(1) + "|will~be~computed|werden~berechnet|werden~ermittelt"},
+      // With a length the text is about this length: "12 µm sind zu addieren".
+      {D::kSign, kToAdd, kOfState.substr(1) + "|=#length"},
+      {D::kAddition, kToAdd + " =#length", ""},
       {D::kSign,
        "umgekehrt|revers|invers|invert|gespiegel|mirrored|vertausch|swapped|opposite|entgegengesetz|flipped|"
        "negier|negated|gegensinn|gegenläuf|seitenverk " +

@@ -205,6 +205,7 @@ class Difference {
     if (kComparisons.contains(next) || compared_)
       return place_ == SignPlace::kHeading && turned ? SignSaid::kUnclear : SignSaid::kNothing;
     if (negated_) return SignSaid::kUnclear;
+    if (denied_) return turned ? SignSaid::kActualLessNominal : SignSaid::kNominalLessActual;
     const bool strong = list_[minus_].strong;
     if (equals_ || strong) return sign;
     // "Soll-Ist-Abweichung" often means only the deviation of both.
@@ -241,6 +242,8 @@ class Difference {
            role_of(list_[at - 1].word) == OperandRole::kAside)
       --at;
     if (at == 0) return;
+    denied_ = list_[at - 1].kind == SignKind::kWord &&
+              (list_[at - 1].word == "nicht" || list_[at - 1].word == "not");
     equals_ = list_[at - 1].kind == SignKind::kEquals;
     defined_ = equals_ || list_[at - 1].kind == SignKind::kColon || list_[at - 1].kind == SignKind::kOpen;
     const bool opened = list_[at - 1].kind == SignKind::kOpen;
@@ -295,6 +298,7 @@ class Difference {
   std::optional<std::size_t> left_, right_;
   bool defined_ = false;  // the difference follows = : or a bracket
   bool equals_ = false, negated_ = false, compared_ = false;
+  bool denied_ = false;  // "nicht Soll - Ist"
   bool of_deviation_ = false, of_correction_ = false;
   mutable bool compound_ = false;
 };
@@ -551,6 +555,42 @@ SignSaid sign_said(std::string_view text, SignPlace place, Travel travel) {
   const bool deviation = std::any_of(tokens.list().begin(), tokens.list().end(),
                                      [](const SignToken& one) { return says_deviation(one.word); });
   return place == SignPlace::kTitle || deviation ? SignSaid::kUnclear : SignSaid::kNothing;
+}
+
+bool says_sign_is_usual(std::string_view text) {
+  static const WordSet kUsual = {"unverändert", "unveraendert", "unchanged",    "geprüft",   "checked",
+                                 "verified",    "ordnung",      "ok",           "korrekt",   "correct",
+                                 "richtig",     "iso",          "kontrolliert", "bestätigt", "confirmed"};
+  static const WordSet kWas = {"war", "was", "wurde", "had", "hatte"};
+  static const WordSet kBefore = {"vor", "before", "früher", "damals", "previous", "alten", "old", "vorher"};
+  static const WordSet kNo = {"no", "kein", "keine", "keinen", "without", "ohne"};
+  static const WordSet kWrong = {"falsch", "wrong", "incorrect"};
+  static constexpr std::array<std::string_view, 19> kChanges = {
+      "umgekehrt", "umgedreht", "gedreht", "vertauscht", "revers",  "invers", "invert",
+      "opposite",  "gespiegel", "negativ", "positiv",    "gegen",   "minus",  "plus",
+      "swapped",   "flipped",   "negier",  "negated",    "entgegen"};
+  bool sign = false, usual = false, was = false, before = false, no = false, change = false, wrong = false;
+  bool negated = false, changed = false;
+  for (const std::string& word : words_about_size(text)) {
+    sign |= word == "sign" || word == "signs" || word.starts_with("vorzeichen");
+    usual |= kUsual.contains(word);
+    was |= kWas.contains(word);
+    before |= kBefore.contains(word);
+    no |= kNo.contains(word);
+    negated |= word == "nicht" || word == "not" || word == "never";
+    wrong |= kWrong.contains(word);
+    change |= word == "change" || word == "changed" || word.find("wechsel") != std::string::npos ||
+              word.find("umkehr") != std::string::npos || word.find("änderung") != std::string::npos;
+    changed |= word == "+" || word == "-" ||
+               std::any_of(kChanges.begin(), kChanges.end(),
+                           [&](std::string_view start) { return word.starts_with(start); });
+    const OperandRole role = role_of(word);
+    changed |= role == OperandRole::kNominal ||
+               (role == OperandRole::kActual && word != "ist" && !is_instrument(word));
+  }
+  if (!sign || changed || negated) return false;
+  if (change) return no && !wrong;
+  return was && before ? !usual : usual && !wrong && !no;
 }
 
 }  // namespace vernier::importer

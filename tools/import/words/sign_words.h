@@ -35,4 +35,8 @@ SignSaid sign_said(std::string_view text, SignPlace place, Travel travel = Trave
 /// other.
 SignSaid both_signs(SignSaid one, SignSaid other);
 
+/// True for a text that mentions the sign, but states that it is the usual one, or that of another report:
+/// "Vorzeichen geprüft und in Ordnung", "No sign change was necessary", "Vorzeichenregel nach ISO 230-1".
+bool says_sign_is_usual(std::string_view text);
+
 }  // namespace vernier::importer

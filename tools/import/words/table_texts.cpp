@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "tools/import/words/unread_words.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/words.h"
 
@@ -68,6 +69,8 @@ std::vector<TableText> texts_about(const sheet::Sheet& sheet, const sheet::Sheet
       label = label_of_sign(cell);
     }
   }
+  for (const std::string& text : texts_beside_headings(sheet, table))
+    texts.push_back({sheet.line[table.heading_row], text});
   // A cover sheet is about all sheets of the workbook; another table states its own facts.
   std::string label;
   for (const sheet::TextElsewhere& other : sheet.elsewhere) {

@@ -154,10 +154,27 @@ std::string note_of_title_unit(const char* of, const TitleUnit& unit) {
                      unit.unit, unit.title);
 }
 
+namespace {
+
+/// The cells above the headings; a unit alone is a part of the cell before it ("X axis error, um" in a file
+/// with commas).
+std::vector<std::string> titles_with_units(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  std::vector<std::string> titles = title_cells(sheet, table);
+  for (std::size_t k = titles.size(); k-- > 1;)
+    if (names_deviation(titles[k - 1]) && sheet::unit_meant(titles[k]) &&
+        unit_of_deviations_in(titles[k - 1]).unit.empty()) {
+      titles[k - 1] += ", " + titles[k];
+      titles.erase(titles.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  return titles;
+}
+
+}  // namespace
+
 TitleUnits units_of_titles(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
   TitleUnits found;
   bool deviations = false, positions = false;  // contradictions
-  for (const std::string& title : title_cells(sheet, table)) {
+  for (const std::string& title : titles_with_units(sheet, table)) {
     take(found.deviations, unit_of_deviations_in(title), title, deviations);
     // "Units: mm  Error units: um": the unit of the values is that of the positions.
     const std::vector<Part> parts = parts_of(title);
