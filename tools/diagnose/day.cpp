@@ -33,9 +33,7 @@ bool daily_drift_explains(const Evidence& evidence, const Pool& pool, std::size_
   const Evidence::Range time = evidence.time_range();
   if (pool.candidate(item).choice.inputs.empty() || time.high <= time.low) return false;
   const Eigen::MatrixXd beside = pool.columns(others);
-  const std::vector<double>& scanned = pool[item].scored.scanned;
-  const double named =
-      bic_decrease(evidence, evidence.columns(pool.candidate(item), scanned), beside, scanned.size());
+  const double named = bic_decrease_by(evidence, pool, item, beside);
   for (const Eigen::MatrixXd& shift : daily_shifts(evidence))
     if (bic_decrease(evidence, shift, beside, 0) > named - distance) return true;
   return false;

@@ -7,6 +7,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
 #include "tools/format/columns.h"
+#include "tools/import/columns/column_guess.h"
 #include "tools/import/columns/delimited.h"
 #include "tools/import/columns/point_columns.h"
 #include "tools/import/columns/sheet_wishes.h"
@@ -256,12 +257,12 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
                      "If a column has the position, give --column with the name of the axis; if the axis did "
                      "not move, give its position: ");
   if (!arguments.directions.empty()) {
-    std::set<std::string> names = {"X", "Y", "Z", "A", "B", "C"};  // of an unknown machine
-    if (!arguments.machine.empty()) {
-      names.clear();
-      for (const model::Axis& axis : model::read_machine(arguments.machine).axes) names.insert(axis.name);
-    }
-    importer::add_directions_from_order(table, [&](const std::string& name) { return names.contains(name); });
+    importer::SheetWishes wishes;
+    if (!arguments.machine.empty())
+      for (const model::Axis& axis : model::read_machine(arguments.machine).axes)
+        wishes.axes.push_back(axis.name);
+    const importer::Guess guess(wishes);
+    importer::add_directions_from_order(table, [&](const std::string& name) { return guess.is_axis(name); });
   }
   if (arguments.check_every > 0) importer::set_roles(table, arguments.check_every);
   write_survey(kind_name, arguments, survey);

@@ -53,9 +53,7 @@ std::string file_whose_drift_explains(const Evidence& evidence, const Pool& pool
   const model::Measurement& m = evidence.measurement();
   if (pool.candidate(item).choice.inputs.empty() || m.files.size() < 2) return {};
   const Eigen::MatrixXd beside = pool.columns(others);
-  const std::vector<double>& scanned = pool[item].scored.scanned;
-  const double named =
-      bic_decrease(evidence, evidence.columns(pool.candidate(item), scanned), beside, scanned.size());
+  const double named = bic_decrease_by(evidence, pool, item, beside);
   for (std::size_t file = 0; file < m.files.size(); ++file)
     if (drift_explains(evidence, time_of_file(evidence, file), beside, named - distance))
       return m.files[file];

@@ -399,6 +399,12 @@ double bic_decrease(const Evidence& evidence, const Eigen::MatrixXd& raw, const 
   return deviance(before) - deviance(after) - price * (own.rank() + static_cast<double>(scanned));
 }
 
+double bic_decrease_by(const Evidence& evidence, const Pool& pool, std::size_t item,
+                       const Eigen::MatrixXd& beside) {
+  const std::vector<double>& scanned = pool[item].scored.scanned;
+  return bic_decrease(evidence, evidence.columns(pool.candidate(item), scanned), beside, scanned.size());
+}
+
 AxisFunction function_of_axis(const Evidence& evidence, std::size_t axis, const effects::DofPlace& place,
                               const Eigen::MatrixXd& beside) {
   const ShapeThresholds& limits = evidence.thresholds().shape;

@@ -36,6 +36,10 @@ Gain gain_of(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::
 double bic_decrease(const Evidence& evidence, const Eigen::MatrixXd& raw, const Eigen::MatrixXd& beside,
                     std::size_t scanned);
 
+/// Returns the decrease of the BIC by an accepted effect `item` of the pool, beside `beside`.
+double bic_decrease_by(const Evidence& evidence, const Pool& pool, std::size_t item,
+                       const Eigen::MatrixXd& beside);
+
 /// Estimates the error as a function of one axis. function_of_axis uses the readings, not the form that the
 /// search selected. The test compares half-waves down to an eighth of the measured range with half-waves of
 /// half this length. With fewer than 17 positions the half-waves are longer, with two positions for each

@@ -49,7 +49,7 @@ void assign_open_axes(ListedRows& list);
 /// can show the unit.
 bool asks_for_unit_of_angles(const ListedRows& list);
 
-/// Returns the column of an axis. Throws InputError if there is none, or if it has no unit.
+/// Returns the column of an axis. Throws InputError if no column is the axis, or if the column has no unit.
 std::size_t column_of_axis(const ListedRows& list, const model::Axis& axis);
 
 /// Returns the call that goes on with these assignments beside those of the user, or the options alone.

@@ -27,7 +27,7 @@ FreeColumn free_column(const SheetReading& reading, std::size_t k, const std::st
   return {reading.table.headings[k].text, reading.table.headings[k].name, unit};
 }
 
-/// Index of the column of an axis by its name; the number of columns: there is none.
+/// Index of the column of an axis by its name; the number of columns if no column has the name of the axis.
 std::size_t column_named(const SheetReading& reading, const std::string& name) {
   const auto found = std::find_if(
       reading.columns.begin(), reading.columns.end(),
