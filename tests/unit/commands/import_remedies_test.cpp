@@ -401,7 +401,7 @@ TEST_F(ImportRemedies, OfATrackerReadTheFileThatIsThere) {
   EXPECT_THAT(said, HasSubstr("vernier import tracker pts.txt --column \"2=x[mm]\""));
   text::write_file(folder + "/nom.csv", "Punkt;X [mm];Y [mm]\nP3;200;400\nP2;100;400\nP1;0;400\n");
   ASSERT_EQ(run(call + "--column 1=point --nominal nom.csv -o c.csv"), 0) << said;
-  EXPECT_THAT(said, HasSubstr("3 points joined with the positions of nom.csv by the names in point"));
+  EXPECT_THAT(said, HasSubstr("3 points and the positions of nom.csv, joined by the names in point"));
   EXPECT_THAT(text::read_file(folder + "/c.csv"),
               testing::StartsWith("X[mm],Y[mm],x[mm],y[mm],z[mm],point\n0,400,0.01,400,0,P1\n"));
 }

@@ -216,5 +216,20 @@ TEST_F(ProbedBed, APrintedSquareBesideTheMeshMakesNoBowOfTheAxes) {
   EXPECT_THAT(text, HasSubstr("# Not measured: xz_skew and yz_skew"));
 }
 
+TEST_F(ProbedBed, HeightsAtOneTemperatureAreThoseOfOneSurvey) {
+  std::istringstream rows(survey());
+  std::string heated, line;
+  while (std::getline(rows, line)) heated += line + (heated.empty() ? ",T_bed[degC]\n" : ",60\n");
+  text::write_file(folder + "/bed.csv", heated);
+  ASSERT_EQ(
+      run("vernier fit p.xml bed.csv -o fit.xml && vernier export klipper fit.xml -o out --touches bed.csv "
+          "--at T_bed=100"),
+      1)
+      << said;
+  EXPECT_THAT(said, HasSubstr("\"T_bed\": this machine has no axis, input or motion quantity of this name"));
+  EXPECT_THAT(said, HasSubstr("give with --touches the touches of one survey (vernier import printer LOG "
+                              "--series N, or PRINTER.CFG --profile NAME) in the place of --at"));
+}
+
 }  // namespace
 }  // namespace vernier::probed_bed_test

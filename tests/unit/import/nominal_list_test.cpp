@@ -58,7 +58,7 @@ TEST(NominalList, IsJoinedByTheNamesOfThePoints) {
       "X[mm],Y[mm],point,x[mm],y[mm],z[mm]\n0,0,A::Vol::P1,1000.01,-500,0\n"
       "100,0,A::Vol::P2,1100,-500.01,0\n100,60,A::Vol::P3,1100,-440,0.01\n30,80,A::Vol::P4,1030,-420,0\n");
   EXPECT_EQ(result.names, "point");
-  EXPECT_EQ(result.unused, 1U);
+  EXPECT_EQ(result.unused_lines.size(), 1U);
   ASSERT_TRUE(result.rms_mm.has_value());
   EXPECT_LT(*result.rms_mm, 0.02);  // errors of 0.01 mm in three coordinates
 }
@@ -79,7 +79,8 @@ TEST(NominalList, AListInAnotherOrderIsRefused) {
 TEST(NominalList, WhatCannotBeJoinedIsNamed) {
   EXPECT_THAT(
       join("X [mm];Y [mm]\n0;0\n100;0\n", false),
-      HasSubstr("pts.txt has 4 points, this list has 2 positions, and no column of names joins them"));
+      HasSubstr("pts.txt has 4 points, this list has 2 positions, and no column of names joins them. If the "
+                "file of points has the names"));
   EXPECT_THAT(join("Punkt;X [mm];Y [mm]\nP4;30;80\nP3;100;60\nP2;100;0\n", true),
               HasSubstr("pts.txt:1: \"A::Vol::P1\": the list of nominal positions (nom.csv) has no point"));
   EXPECT_THAT(join("Punkt;X [mm];Y [mm]\nP1;0;0\nP1;1;0\nP2;100;0\nP3;100;60\nP4;30;80\n", true),
@@ -93,6 +94,37 @@ TEST(NominalList, WhatCannotBeJoinedIsNamed) {
       HasSubstr("nom.csv:1: \"Y\": the list of nominal positions has no column with the name of these "
                 "axes"));
   EXPECT_THAT(join("Punkt\nP1\nP2\nP3\nP4\n", true), HasSubstr("refused: "));
+}
+
+TEST(NominalList, DistancesShowThePositionsWithoutAPoint) {
+  NominalTable result;
+  // The second and the fifth position of the list have no point.
+  EXPECT_EQ(join("X [mm];Y [mm]\n0;0\n50;200\n100;0\n100;60\n400;10\n30;80\n", false, &result),
+            "X[mm],Y[mm],x[mm],y[mm],z[mm]\n0,0,1000.01,-500,0\n100,0,1100,-500.01,0\n100,60,1100,-440,0.01\n"
+            "30,80,1030,-420,0\n");
+  EXPECT_TRUE(result.by_distances);
+  EXPECT_EQ(result.unused_lines, (std::vector<std::size_t>{3, 6}));
+  // A point that agrees with no position: no pairs are made up.
+  EXPECT_THAT(join("X [mm];Y [mm]\n0;0\n50;200\n100;0\n100;60\n400;10\n300;80\n", false),
+              HasSubstr("the distances between the points do not show which positions have no point. If the "
+                        "file of points has the names of the points, read them too"));
+}
+
+TEST(NominalList, AnotherUnitOfThePointsIsNamed) {
+  const model::Machine machine = model::parse_machine(kMachine, "m.xml");
+  ColumnMap map;
+  for (const char* word : {"2=x[mm]", "3=y[mm]", "4=z[mm]"}) add_column(map, word);
+  ImportTable metres = mapped_table(
+      "P1, 1.00001, -0.5, 0\nP2, 1.1, -0.50001, 0\nP3, 1.1, -0.44, 0.00001\nP4, "
+      "1.03, -0.42, 0\n",
+      "pts.txt", map);
+  finish_tracker(metres);
+  EXPECT_THAT(
+      [&] {
+        with_nominal(metres, {"X [mm];Y [mm]\n0;0\n100;0\n100;60\n30;80\n", "nom.csv"}, machine, 2);
+      },
+      testing::ThrowsMessage<text::InputError>(HasSubstr("With the points in [m] in the place of [mm] they "
+                                                         "agree within 0.00829 mm: write x[m], y[m], z[m]")));
 }
 
 /// A robot with three joints and links of 100, 80 and 60 mm.

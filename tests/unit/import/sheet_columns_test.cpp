@@ -198,6 +198,13 @@ const Case kCases[] = {
     {"RunsOfNominalLessActual", "X [mm];1+ (Soll-Ist) [µm];1- (Soll-Ist) [µm]\n0;1;2\n9;1;2\n",
      "X[mm],dirX,run,x[mm]\n0,1,1,-0.001\n9,1,1,8.999\n9,-1,1,8.998\n0,-1,1,-0.002\n"},
     {"NoUnits", "X;x\n1;2\n", "refused: s.csv:1: no unit: give it for all (--unit mm)"},
+    {"PointsWithoutUnits", "Punkt;X;Y;Z\nP1;1,5;2,5;3,5\nP2;2,5;3;4\n",
+     "If they are points that an instrument measured, such as a laser tracker, and another file LIST has the "
+     "positions of the axes, give: vernier import tracker s.csv --machine MACHINE --nominal LIST"},
+    {"PointsAlone", "Punkt;X [mm];Y [mm];Z [mm]\nP1;1,5;2,5;3,5\nP2;2,5;3;4\n",
+     "refused: s.csv:1: no column of the table is a reading: the table has X, Y and Z alone."},
+    {"JointsWithinATurn", "A1;A2;A3;A4;A5;A6\n1.66;0.15;-0.2;-1.78;0.64;-1.98\n0;0.1;0.2;0.3;0.4;3.1\n",
+     "--column \"A6[rad]=A6\"; no value of A1 to A6 is larger than a turn in radians: [rad] is proposed"},
     {"TwoSigns", "X[mm];x[mm]\n1,5;2\n3.5;2\n", "--decimal comma or point"},
     {"CommaInCommas", "X[mm],x[mm]\n0,5,1,5\n", "separated by commas, save the table with semicolons"},
     {"Words", "X[mm];x[mm]\n1;2\n2;abc\n3;4\n", "refused: s.csv:3: \"abc\": not a number, for x"},

@@ -173,6 +173,7 @@ async function shop(page) {
   await positioning(page);
   await sheetsOfAWorkbook(page);
   await assumptions(page);
+  await pointsOfAMill(page);
 }
 
 /** What the program assumed is said in the words of the page, and the file can be read differently. */
@@ -652,6 +653,25 @@ async function pointsAndPositions(page) {
   await page.click('#fit');
   // The fit says where the reflector is, in the frame of the last link of the description.
   await words(page, '#fit-notes', 'mm in the frame of the link l6 of the URDF');
+}
+
+/** Of a mill a tracker's X, Y and Z have the names of its axes: the page says what the file may be, and one choice makes it points. */
+async function pointsOfAMill(page) {
+  await view(page, 'project');
+  await page.choose('#machine', 'router.xml');
+  await page.drop([{ name: 'mill_points.txt', text: 'Punkt;X;Y;Z\nP1;2275,8380;5,7876;276,3618\nP2;2085,2766;-176,1341;353,5287\n' }]);
+  const own = '[data-of="mill_points.txt"]';
+  await words(page, `${own} #sheet-message`, 'choose "points of a laser tracker" in the field "read as"');
+  assert.ok(!/vernier import|--[a-z]/.test(await text(page, `${own} #sheet-message`)), await text(page, `${own} #sheet-message`));
+  await page.choose(`${own} select:has(option[value=tracker])`, 'tracker');
+  await words(page, `${own} #proposed-unit`, 'mm is proposed');
+  await words(page, `${own} #where-it-stood`, 'Where did the machine stand at each point?');
+  assert.deepEqual(await page.evaluate(`[...document.querySelectorAll('${own} [aria-label^="name of column"]')].map((one) => one.value)`), [
+    'point',
+    'x',
+    'y',
+    'z',
+  ]);
 }
 
 /** The same as a controller and a tracker write them: no units, a decimal comma, the points in another order. */

@@ -87,7 +87,8 @@ void run_printer(PrinterArguments& arguments) {
     fmt::print(
         out,
         "note: the log has several surveys of the bed, which are read as one table: {}; to read one of "
-        "them (if the screws of the bed were turned between them), give --series with its number\n",
+        "them (if the screws of the bed were turned between them, or for the heights at one temperature), "
+        "give --series with its number\n",
         read.surveys);
   for (const std::string& note : read.notes) fmt::print(out, "note: {}\n", note);
   if (read.not_probed > 0)

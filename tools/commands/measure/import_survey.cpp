@@ -172,14 +172,21 @@ void print_pairing(std::FILE* out, const importer::LoggedTable& logged, const st
 }
 
 void print_joined(std::FILE* out, const importer::NominalTable& joined, const std::string& list) {
-  fmt::print(out, "{} points joined with the positions of {} by {}", joined.table.line.size(), list,
-             joined.names.empty() ? "row number" : "the names in " + joined.names);
+  fmt::print(out, "{} points and the positions of {}, {}", joined.table.line.size(), list,
+             importer::joined_by(joined));
   if (joined.rms_mm)
     fmt::print(out, "; rms distance of the points from the positions of the nominal machine: {:.3g} mm",
                *joined.rms_mm);
   fmt::print(out, "\n");
   if (!joined.note.empty()) fmt::print(out, "{}\n", joined.note);
-  if (joined.unused > 0) fmt::print(out, "{} positions of {} have no point\n", joined.unused, list);
+  if (joined.unused_lines.empty()) return;
+  constexpr std::size_t kPrinted = 10;
+  std::string lines;
+  for (std::size_t i = 0; i < std::min(kPrinted, joined.unused_lines.size()); ++i)
+    lines += fmt::format("{}{}", i == 0 ? "" : ", ", joined.unused_lines[i]);
+  fmt::print(out, "{} positions of {} have no point: {} {}{}\n", joined.unused_lines.size(), list,
+             joined.unused_lines.size() == 1 ? "line" : "lines", lines,
+             joined.unused_lines.size() > kPrinted ? ", ..." : "");
 }
 
 /// The table with the positions of the axes, and where they came from.
@@ -197,7 +204,8 @@ void write_survey(const std::string& kind, const SurveyArguments& arguments, con
   if (joined)
     result["nominal"] = {{"file", arguments.nominal},
                          {"names", joined->names.empty() ? Json(nullptr) : Json(joined->names)},
-                         {"n_unused", joined->unused},
+                         {"n_unused", joined->unused_lines.size()},
+                         {"by_distances", joined->by_distances},
                          {"rms_mm", text::or_null(joined->rms_mm)}};
   if (!arguments.machine.empty()) {
     // The same reading that a fit will do, with the machine's axes and inputs.

@@ -21,6 +21,7 @@
 #include "tools/safety/safety_sheet.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
+#include "tools/text/words.h"
 
 namespace vernier::commands::exchange_cli {
 namespace {
@@ -203,6 +204,34 @@ model::Machine with_probe_of_touches(const model::Machine& machine, const Printe
   return model::parse_machine(complete.text, arguments.common.machine);
 }
 
+/// True if a word of the state (--at) is a column of the touches.
+bool names_column_of_touches(const PrinterArguments& arguments) {
+  std::string headings = ",";
+  for (const std::string& file : arguments.touches) {
+    const std::string text = text::read_file(file);
+    headings += text.substr(0, text.find('\n')) + ",";
+  }
+  const std::vector<std::string> words = text::parts_of(arguments.common.at, ',');
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+    const std::string name = text::trimmed(word.substr(0, word.find('=')));
+    return !name.empty() && headings.find("," + name + "[") != std::string::npos;
+  });
+}
+
+/// The state in which the files are exact. The heights follow the touches in the state of these.
+model::States state_of_files(const model::Machine& machine, const PrinterArguments& arguments) {
+  try {
+    return state_of(machine, arguments.common);
+  } catch (const text::InputError& error) {
+    if (!names_column_of_touches(arguments)) throw;
+    throw text::InputError(
+        fmt::format("{}. The heights follow all touches of the files, also those in another state: for the "
+                    "heights in one state, give with --touches the touches of one survey (vernier import "
+                    "printer LOG --series N, or PRINTER.CFG --profile NAME) in the place of --at",
+                    error.what()));
+  }
+}
+
 PrinterModel model_of(const PrinterArguments& arguments, const exchange::PrinterFeatures& features) {
   PrinterModel model{read_model(arguments.common.machine), false, {}, {}, {}};
   const exchange::ThreeAxes axes = exchange::three_axes(model.fitted);
@@ -215,14 +244,14 @@ PrinterModel model_of(const PrinterArguments& arguments, const exchange::Printer
     model.bed = exchange::bed_of_touches(
         model.fitted, axes, model::read_measurement(arguments.touches, model.fitted), arguments.bed);
     model.follows_touches =
-        !exchange::heights_are_measured(model.fitted, axes, state_of(model.fitted, arguments.common));
+        !exchange::heights_are_measured(model.fitted, axes, state_of_files(model.fitted, arguments));
   } else if (with_bed) {
     model.bed = exchange::bed_of(model.fitted, axes, arguments.bed);
     model.follows_touches = model.bed && is_bed_or_axes(model.fitted);
     if (model.follows_touches) require_touches(*model.bed, arguments);
   }
   model.of_heights = model.follows_touches ? model::nominal_machine(model.fitted) : model.fitted;
-  model.at = state_of(model.fitted, arguments.common);
+  model.at = state_of_files(model.fitted, arguments);
   if (!arguments.touches.empty())
     exchange::give_shape(*model.bed, model.of_heights, axes,
                          model::read_measurement(arguments.touches, model.of_heights));

@@ -95,23 +95,9 @@ std::vector<std::size_t> rows_by_name(const ImportTable& points, const ListedRow
   return {};
 }
 
-std::vector<std::size_t> rows_by_number(const ImportTable& points, const ListedRows& list) {
-  if (points.line.size() != list.rows.size())
-    throw text::InputError(
-        list.heading(), "",
-        fmt::format(
-            "{} has {} points, this list has {} positions, and no column of names joins them: read the "
-            "names of the points too, for example --column 1=point",
-            points.file, points.line.size(), list.rows.size()));
-  std::vector<std::size_t> rows(list.rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
-  return rows;
-}
-
-/// The points with the positions of the axes; `rows`: the row of the list for each point.
-ImportTable joined(const ImportTable& points, const ListedRows& list, const std::vector<std::size_t>& rows,
-                   const model::Machine& machine) {
-  ImportTable table{points.file, {}, points.line};
+/// Adds the positions of the axes that the points do not have; `rows`: the row of the list for each row.
+void add_positions(ImportTable& table, const ImportTable& points, const ListedRows& list,
+                   const std::vector<std::size_t>& rows, const model::Machine& machine) {
   for (const model::Axis& axis : machine.axes) {
     if (points.find(axis.name) != nullptr) continue;
     const std::size_t k = column_of_axis(list, axis);
@@ -119,21 +105,77 @@ ImportTable joined(const ImportTable& points, const ListedRows& list, const std:
     for (const std::size_t i : rows) column.cells.push_back(position_cell(list, i, k, axis));
     table.columns.push_back(std::move(column));
   }
+}
+
+/// The points with the positions of the axes; `rows`: the row of the list for each point.
+ImportTable joined(const ImportTable& points, const ListedRows& list, const std::vector<std::size_t>& rows,
+                   const model::Machine& machine) {
+  ImportTable table{points.file, {}, points.line};
+  add_positions(table, points, list, rows, machine);
   table.columns.insert(table.columns.end(), points.columns.begin(), points.columns.end());
   return table;
 }
 
-std::vector<std::size_t> rows_of_points(const ImportTable& points, const ListedRows& list,
-                                        std::string& names) {
-  std::vector<std::size_t> rows = rows_by_name(points, list, names);
-  return names.empty() ? rows_by_number(points, list) : rows;
+ToolPlace place_of(const model::Machine& machine) {
+  return machine.tool_shifts.empty() ? ToolPlace::kOfTheMachine : ToolPlace::kUnknown;
+}
+
+/// Row of the list for each point, where points are missing and nothing names them; empty: the distances do
+/// not tell.
+std::vector<std::size_t> rows_by_distances(const ImportTable& points, const ListedRows& list,
+                                           const model::Machine& machine, double tolerance_mm) {
+  const std::optional<Eigen::Matrix3Xd> measured = measured_points(points);
+  const bool has_axes = std::any_of(machine.axes.begin(), machine.axes.end(), [&](const model::Axis& axis) {
+    return points.find(axis.name) != nullptr;
+  });
+  if (!measured || has_axes) return {};
+  ImportTable positions{list.reading.sheet.file, {}, {}};
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < list.rows.size(); ++i) {
+    positions.line.push_back(list.place(i).line);
+    all.push_back(i);
+  }
+  add_positions(positions, points, list, all, machine);
+  return poses_in_order(nominal_poses(positions, machine), *measured, place_of(machine), tolerance_mm);
+}
+
+/// How the rows of a list were found.
+struct JoinedRows {
+  std::vector<std::size_t> rows;  // of the list, for each point
+  std::string names;              // as in NominalTable
+  bool by_distances = false;
+};
+
+JoinedRows rows_of_points(const ImportTable& points, const ListedRows& list, const model::Machine& machine,
+                          double tolerance_mm) {
+  JoinedRows joined;
+  joined.rows = rows_by_name(points, list, joined.names);
+  if (!joined.names.empty()) return joined;
+  if (points.line.size() == list.rows.size()) {
+    for (std::size_t i = 0; i < list.rows.size(); ++i) joined.rows.push_back(i);
+    return joined;
+  }
+  joined.by_distances = true;
+  const bool lost = points.line.size() < list.rows.size();
+  if (lost) joined.rows = rows_by_distances(points, list, machine, tolerance_mm);
+  if (joined.rows.empty())
+    throw text::InputError(
+        list.heading(), "",
+        fmt::format(
+            "{} has {} points, this list has {} positions, and no column of names joins them{}. If the "
+            "file of points has the names of the points, read them too (--column \"HEADING=point\"); "
+            "otherwise {}",
+            points.file, points.line.size(), list.rows.size(),
+            lost ? "; the distances between the points do not show which positions have no point" : "",
+            lost ? "omit the positions without a point from the list"
+                 : "omit the points without a position from their file"));
+  return joined;
 }
 
 constexpr double kTolerances = 3;  // of a point from its position, as in pair_points
 
 Eigen::VectorXd distances(const ImportTable& table, const model::Machine& machine) {
-  return distances_from_nominal(table, machine,
-                                machine.tool_shifts.empty() ? ToolPlace::kOfTheMachine : ToolPlace::kUnknown);
+  return distances_from_nominal(table, machine, place_of(machine));
 }
 
 /// Largest distance of a point from its nominal position, mm, if the joints of the list are in `unit`; no
@@ -155,8 +197,8 @@ std::string settle_units(const ImportTable& points, ListedRows& list, const mode
   assign_open_axes(proposed);
   std::optional<double> degrees, radians;
   try {
-    std::string names;
-    const ImportTable table = joined(points, proposed, rows_of_points(points, list, names), machine);
+    const ImportTable table =
+        joined(points, proposed, rows_of_points(points, proposed, machine, tolerance_mm).rows, machine);
     degrees = farthest_mm(table, points, machine, "deg");
     radians = farthest_mm(table, points, machine, "rad");
   } catch (const text::InputError&) {
@@ -209,6 +251,27 @@ std::string other_unit(const ImportTable& table, const ImportTable& points, cons
   return fmt::format("{}, give: {}", found, way_on(nominal, list, words));
 }
 
+/// The other unit of the points, if all of them agree in it: a sentence with the unit; empty: they do not.
+std::string other_unit_of_points(const ImportTable& table, const model::Machine& machine,
+                                 double tolerance_mm) {
+  const ImportTable::Column& first = *table.find(format::columns::kPoint[0]);
+  for (const char* unit : {"mm", "m", "in", "cm"}) {
+    if (unit == first.unit) continue;
+    ImportTable other = table;
+    std::string words;
+    for (const char* name : format::columns::kPoint) {
+      for (ImportTable::Column& column : other.columns)
+        if (column.name == name) column.unit = unit;
+      words += fmt::format("{}{}[{}]", words.empty() ? "" : ", ", name, unit);
+    }
+    const Eigen::VectorXd off = distances(other, machine);
+    if (off.size() > 0 && off.maxCoeff() <= kTolerances * tolerance_mm)
+      return fmt::format("With the points in [{}] in the place of [{}] they agree within {:.3g} mm: write {}",
+                         unit, first.unit, off.maxCoeff(), words);
+  }
+  return "";
+}
+
 /// Compares the points with the nominal tool points: a list in another order would give a false result.
 void check_distances(NominalTable& result, const ImportTable& points, const ListedRows& list,
                      const NominalList& nominal, const model::Machine& machine, double tolerance_mm) {
@@ -218,14 +281,14 @@ void check_distances(NominalTable& result, const ImportTable& points, const List
   result.rms_mm = std::sqrt(off.squaredNorm() / static_cast<double>(off.size()));
   Eigen::Index worst = 0;
   if (off.maxCoeff(&worst) <= kTolerances * tolerance_mm) return;
-  const std::string unit = other_unit(table, points, list, nominal, machine, tolerance_mm);
+  std::string unit = other_unit(table, points, list, nominal, machine, tolerance_mm);
+  if (unit.empty()) unit = other_unit_of_points(table, machine, tolerance_mm);
   throw text::InputError(
       {table.file, table.line[static_cast<std::size_t>(worst)]}, "",
       fmt::format(
           "this point is {:.3g} mm from its nominal position after the best rigid motion of all points "
           "({}){}",
-          off[worst],
-          result.names.empty() ? "joined by row number" : "joined by the names in " + result.names,
+          off[worst], joined_by(result),
           !unit.empty()
               ? ". " + unit
               : fmt::format(": check the order and the names of both lists{}, or give a larger --tolerance",
@@ -236,6 +299,11 @@ void check_distances(NominalTable& result, const ImportTable& points, const List
 }
 
 }  // namespace
+
+std::string joined_by(const NominalTable& table) {
+  if (!table.names.empty()) return "joined by the names in " + table.names;
+  return table.by_distances ? "joined by their order and the distances between them" : "joined by row number";
+}
 
 NominalTable with_nominal(const ImportTable& points, const NominalList& nominal,
                           const model::Machine& machine, double tolerance_mm) {
@@ -248,12 +316,14 @@ NominalTable with_nominal(const ImportTable& points, const NominalList& nominal,
   }
   NominalTable result;
   result.note = list.note;
-  const std::vector<std::size_t> rows = rows_of_points(points, list, result.names);
-  std::vector<std::size_t> used = rows;
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  result.unused = list.rows.size() - used.size();
-  result.table = joined(points, list, rows, machine);
+  const JoinedRows rows = rows_of_points(points, list, machine, tolerance_mm);
+  result.names = rows.names;
+  result.by_distances = rows.by_distances;
+  std::vector<char> used(list.rows.size());
+  for (const std::size_t row : rows.rows) used[row] = 1;
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i] == 0) result.unused_lines.push_back(list.place(i).line);
+  result.table = joined(points, list, rows.rows, machine);
   check_distances(result, points, list, nominal, machine, tolerance_mm);
   return result;
 }

@@ -16,6 +16,7 @@
 #include "tools/import/columns/values_beside.h"
 #include "tools/import/tables/assignments_to_try.h"
 #include "tools/import/tables/order_directions.h"
+#include "tools/import/tables/points_alone.h"
 #include "tools/import/tables/run_pairs.h"
 #include "tools/import/words/joint_names.h"
 #include "tools/import/words/sheet_words.h"
@@ -258,6 +259,29 @@ void refuse_units_in_cells(const sheet::Sheet& sheet, const sheet::SheetTable& t
   }
 }
 
+/// The joints of a robot without units, all of them within a turn in radians.
+struct BareJoints {
+  std::string names;  // "A1 to A6"; empty: there are none
+  bool within_a_turn = false;
+};
+
+BareJoints bare_joints(const sheet::Sheet& sheet, const sheet::SheetTable& table,
+                       const std::vector<SheetColumn>& columns) {
+  constexpr double kTurn_rad = 6.2832;  // a whole turn, rounded up
+  BareJoints joints;
+  std::vector<std::string> names;
+  double largest = 0;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (!columns[k].unit.empty()) continue;
+    names.push_back(columns[k].name);
+    if (is_angle(unit_to_say(columns[k].name, columns)))
+      largest = std::max(largest, largest_value(sheet, table, k));
+  }
+  joints.names = joint_series(names);
+  joints.within_a_turn = !joints.names.empty() && largest <= kTurn_rad;
+  return joints;
+}
+
 /// Refuses positions and readings without a unit, with the options that state the units.
 void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& table,
                           const std::vector<SheetColumn>& columns, const Readings& readings,
@@ -270,6 +294,7 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
   const bool inches = std::any_of(columns.begin(), columns.end(), [](const SheetColumn& one) {
     return one.unit == "in" || one.unit == "thou" || one.unit == "uin" || one.unit == "0.0001in";
   });
+  const BareJoints joints = bare_joints(sheet, table, columns);
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const SheetColumn& column = columns[k];
     const bool geometry = guess.is_axis(column.name) ||
@@ -288,10 +313,10 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
                       format::known_units()));
     refuse_units_in_cells(sheet, table, k);
     const double largest = largest_value(sheet, table, k);
-    const std::string unit = deviation ? unit_of_deviation(columns, column.name, largest)
-                             : inches && !is_angle(unit_to_say(column.name, columns))
-                                 ? "in"
-                                 : unit_to_say(column.name, columns);
+    std::string unit =
+        deviation ? unit_of_deviation(columns, column.name, largest) : unit_to_say(column.name, columns);
+    if (!deviation && inches && !is_angle(unit)) unit = "in";
+    if (!deviation && joints.within_a_turn && is_angle(unit)) unit = "rad";
     if (deviation) doubt += unit_doubt(column, table.headings[k].text, unit, largest);
     other_than_deviation |= !deviation;
     units.insert(unit);
@@ -303,15 +328,17 @@ void refuse_without_units(const sheet::Sheet& sheet, const sheet::SheetTable& ta
     return column.use != SheetColumn::Use::kLeft && !column.unit_from.empty() && !units.contains(column.unit);
   });  // --unit would take the place of the unit of a title
   const bool one = units.size() == 1 && !stated && (doubt.empty() || !other_than_deviation);
-  std::vector<std::string> names;
-  for (const SheetColumn& column : columns)
-    if (column.unit.empty()) names.push_back(column.name);
-  const std::string joints = joint_series(names);
-  if (!joints.empty())
+  if (joints.within_a_turn)
+    doubt += fmt::format(
+        "; no value of {} is larger than a turn in radians: [rad] is proposed, write [deg] "
+        "if the values are degrees",
+        joints.names);
+  if (!joints.names.empty())
     doubt += fmt::format(
         "; if {} are the joints of a robot, give the machine file of the robot too (--machine MACHINE): the "
         "command then states the call that assigns the columns to its axes",
-        joints);
+        joints.names);
+  if (const std::string points = points_alone(sheet, table, columns); !points.empty()) doubt += "; " + points;
   throw text::InputError(
       heading, "",
       fmt::format("no unit: give it for {}each, such as{}{}",
@@ -476,6 +503,8 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
   if (!measured) {
     std::vector<std::string> units;
     for (const SheetColumn& column : columns) units.push_back(column.unit);
+    if (const std::string points = points_alone(sheet, table, columns); !points.empty())
+      throw text::InputError(heading, "", "no column of the table is a reading: " + points);
     if (const std::string why = no_assignment(sheet, table, units); !why.empty())
       throw text::InputError(
           heading, "",

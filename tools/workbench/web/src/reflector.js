@@ -8,8 +8,12 @@ export const kReflector = 'A reflector is on the flange at a place that nobody m
 /** A machine's name without what earlier steps have put behind it: model-added-2-fitted.xml is of model. */
 export const stemOf = (machine) => machine.replace(/(-(added|set)(-\d+)?)?(-fitted(-\d+)?)?\.xml$/i, '');
 
-/** Points are measured, and the machine file has no place of a reflector. */
+/**
+ * Points are measured, the machine file has no place of a reflector, and an axis turns: with linear axes alone the place is a
+ * part of the zero of the points.
+ */
 export const needsReflector = () =>
+  store.rows?.columns.some((one) => one.kind === 'axis' && one.unit === 'deg') &&
   ['x', 'y', 'z'].every((kind) => store.rows?.kinds.some((one) => one.kind === kind)) &&
   store.parameters.length > 0 &&
   !store.parameters.some((one) => one.name.startsWith('ToolShift'));

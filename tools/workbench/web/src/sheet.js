@@ -37,11 +37,11 @@ function pointsWithoutHeadings(preview) {
 }
 
 /**
- * The columns of points without positions of the axes, as a tracker writes them (Name, X, Y, Z) for a machine without axes of
- * these names: [[column, {use, name, unit}]]; empty: not such a table.
+ * The columns of points without positions of the axes, as a tracker writes them (Name, X, Y, Z): [[column, {use, name, unit}]];
+ * empty: not such a table. Of a machine with axes of these names the user must have said that it is one (`stated`).
  */
-function pointsOfATracker(preview, axes) {
-  const named = (name) => axes.some((axis) => axis.name.toLowerCase() === name.toLowerCase());
+function pointsOfATracker(preview, axes, stated = false) {
+  const named = (name) => !stated && axes.some((axis) => axis.name.toLowerCase() === name.toLowerCase());
   if (axes.length && !preview.workbook && preview.heading_line == null && !['x', 'y', 'z'].some(named))
     return pointsWithoutHeadings(preview);
   const xyz = preview.columns.map((one, k) => [k, one]).filter(([, one]) => /^[xyz]$/i.test(one.name));
@@ -91,7 +91,11 @@ const ofText = (values) => Object.fromEntries(Object.entries(values).filter(([na
 const inFileName = (sheet) => sheet.replace(/[\s/\\:]+/g, '_');
 
 /** What the program says of a spreadsheet, in the words of the table of columns. */
-function onPage(message) {
+function onPage(whole) {
+  const message = whole.replace(
+    /If they are points that an instrument measured.* is the LIST of this command/,
+    'If they are points that an instrument measured, choose "points of a laser tracker" in the field "read as". If they are positions of the axes, choose this file in the field "nominal" of the points',
+  );
   if (/\bvernier [a-z]/.test(message)) return message;
   const words = pointsOnPage(message)
     .replace(/; --preview shows.*$/, '')
@@ -430,7 +434,9 @@ export async function importSheet(box, name, handOver, asks = false) {
           { class: 'controls' },
           choice('read as', kReadAs, kind, (value) => {
             kind = value;
-            return draw(now);
+            if (kind !== 'tracker' || said.size) return draw(now);
+            propose(now, true);
+            return draw(said.size ? null : now);
           }),
           kind === 'table' && now.sheets.length > 1 ? sheets(now) : null,
           forms[kind].elements,
@@ -469,6 +475,13 @@ export async function importSheet(box, name, handOver, asks = false) {
     );
     return null;
   }
+  /** What the columns of a tracker's points probably are. */
+  function propose(preview, stated) {
+    for (const [k, one] of pointsOfATracker(preview, axes, stated)) {
+      said.set(k, one);
+      proposed ||= one.unit !== preview.columns[k].unit;
+    }
+  }
   /** Imports the table or sheet at once if nothing is missing, else asks. */
   async function begin() {
     if (store.machine) axes = await axesOf(store.machine);
@@ -477,11 +490,7 @@ export async function importSheet(box, name, handOver, asks = false) {
     const first = await guarded(error, ask);
     if (!first) return refused();
     kind = likely(first, axes);
-    if (kind === 'tracker')
-      for (const [k, one] of pointsOfATracker(first, axes)) {
-        said.set(k, one);
-        proposed ||= one.unit !== first.columns[k].unit;
-      }
+    if (kind === 'tracker') propose(first);
     if (said.size) return draw();
     return first.message === null && kind === 'table' && !asks ? doImport(first) : draw(first);
   }
