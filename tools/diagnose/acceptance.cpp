@@ -112,6 +112,7 @@ HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& column
     const Eigen::VectorXd r_out = r(rows);
     if (basis.cols() == 0) {
       result.chi_square += r_out.squaredNorm();
+      result.predicted_square += r_out.squaredNorm();
       continue;
     }
     const Eigen::MatrixXd normal =
@@ -126,6 +127,11 @@ HeldOut leave_blocks_out(const Evidence& evidence, const Eigen::MatrixXd& column
     const Eigen::MatrixXd own_of_block = fitted_to_block_alone(left_out.leftCols(q.cols()), determined);
     error -= own_of_block * (own_of_block.transpose() * error);
     result.chi_square += error.squaredNorm();
+    // The covariance of the prediction is I + A D^-1 A^T with A = left_out v and D the eigenvalues of v. As
+    // D + A^T A is I, its inverse is I - A A^T, and its determinant is 1 / det D.
+    result.predicted_square +=
+        error.squaredNorm() - (v.transpose() * (left_out.transpose() * error)).squaredNorm();
+    result.predicted_log_determinant -= eigen.eigenvalues().tail(seen).array().log().sum();
     const Eigen::VectorXd part = watched_part(theta);
     if (part.size() > 0)
       result.agreement.push_back(part.dot(whole) / std::max(part.norm() * whole.norm(), 1e-300));

@@ -10,7 +10,11 @@ namespace vernier::diagnose {
 
 /// Result of a leave-one-block-out test of the columns (regressors) that a model would gain.
 struct HeldOut {
-  double chi_square = 0;          // sum over all rows; each row is predicted from the other blocks
+  double chi_square = 0;  // sum over all rows; each row is predicted from the other blocks
+  /// The density of the blocks, each predicted from the others, with the covariance of the prediction: the
+  /// sum of squares in units of this covariance, and the logarithm of its determinant. Both are for readings
+  /// with the variance 1.
+  double predicted_square = 0, predicted_log_determinant = 0;
   std::vector<double> agreement;  // cosine, for each block left out, between the contribution of the watched
                                   // columns in this block and in all blocks
 };

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tools/diagnose/acceptance.h"
+#include "tools/diagnose/between_stations.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/maths/chance.h"
 #include "tools/maths/decompositions.h"
@@ -598,7 +599,26 @@ std::string Finder::failed_test(std::size_t item) const {
   if (std::string failed = failed_on_runs(item, gain); !failed.empty()) return failed;
   if (std::string failed = failed_on_levels(item, gain); !failed.empty()) return failed;
   if (std::string failed = failed_on_positions(item, gain); !failed.empty()) return failed;
+  if (std::string failed = failed_between_stations(item); !failed.empty()) return failed;
   return too_large(item);
+}
+
+std::string Finder::failed_between_stations(std::size_t item) const {
+  const std::optional<double> period = pool_.period_of(item);
+  if (!period) return {};
+  const CurveBetweenStations curve = curve_between_stations(evidence_, pool_.candidate(item));
+  // A table follows a wave of two of its intervals and longer.
+  if (curve.columns.cols() == 0 || *period >= 2 * curve.spacing) return {};
+  const Eigen::MatrixXd others = pool_.columns(without(item));
+  Eigen::MatrixXd beside(curve.columns.rows(), others.cols() + curve.columns.cols());
+  beside << others, curve.columns;
+  if (chance_beside(item, beside) < thresholds_.between_stations) return {};
+  const model::Axis& axis = evidence_.machine().axes[*pool_.candidate(item).choice.axis];
+  return fmt::format(
+      "stations: the table of {0} has stations {1:.4g} {2} apart, and a curve between them explains these "
+      "readings as well: make the machine file with --stations {0}={3:.4g} (vernier new), then diagnose "
+      "again",
+      axis.name, curve.spacing, axis.rotary ? "deg" : "mm", curve.spacing / 2);
 }
 
 std::string Finder::failed_on_runs(std::size_t item, double gain) const {
@@ -632,9 +652,21 @@ std::string Finder::failed_on_positions(std::size_t item, double gain) const {
   const double least =
       found ? thresholds_.held_out_share * gain : 2 * kEvidenceOfNothing * variance_of_reading();
   for (const std::vector<int>& places : place_blocks(evidence_, pool_.candidate(item).choice.axis))
-    if (held_out_decrease(item, places) < least)
+    if (held_out_decrease(item, places) < least &&
+        density_gain(item, places) < thresholds_.held_out_share * gain)
       return "test `held out`: the effect does not reduce the residual of readings at held-out positions";
   return {};
+}
+
+double Finder::density_gain(std::size_t item, const std::vector<int>& places) const {
+  // Where the other positions determine a table badly, its error is larger than that of the readings, and the
+  // difference of two sums of squares shows this error alone.
+  std::vector<std::size_t> others = without(item), all = {item};
+  all.insert(all.end(), others.begin(), others.end());
+  const HeldOut less = leave_blocks_out(evidence_, pool_.columns(others), 0, 0, places),
+                with = leave_blocks_out(evidence_, pool_.columns(all), 0, 0, places);
+  return less.predicted_square - with.predicted_square +
+         variance_of_reading() * (less.predicted_log_determinant - with.predicted_log_determinant);
 }
 
 double Finder::variance_of_reading() const {
@@ -837,7 +869,11 @@ double Finder::p_value(std::size_t item) const {
 }
 
 double Finder::p_value_beside(std::size_t item, const std::vector<std::size_t>& others) const {
-  const Eigen::MatrixXd beside = maths::orthonormal(pool_.columns(others), 1e-6, nullptr);
+  return chance_beside(item, pool_.columns(others));
+}
+
+double Finder::chance_beside(std::size_t item, const Eigen::MatrixXd& others) const {
+  const Eigen::MatrixXd beside = maths::orthonormal(others, 1e-6, nullptr);
   const Eigen::VectorXd left = evidence_.residual() - beside * (beside.transpose() * evidence_.residual());
   Eigen::MatrixXd own = pool_[item].columns - beside * (beside.transpose() * pool_[item].columns);
   // The small difference between a copy and its original is rounding, or the curvature of a

@@ -213,6 +213,10 @@ class Finder {
   std::string failed_on_runs(std::size_t item, double gain) const;
   std::string failed_on_levels(std::size_t item, double gain) const;
   std::string failed_on_positions(std::size_t item, double gain) const;
+  std::string failed_between_stations(std::size_t item) const;
+  /// Returns the decrease of -2 log of the density of held-out positions (HeldOut) by an accepted effect,
+  /// times the variance of a reading.
+  double density_gain(std::size_t item, const std::vector<int>& places) const;
   /// Returns the blocks of rows that are held out for an effect: whole runs, or parts of runs for an effect
   /// that acts in single runs.
   std::vector<int> runs_to_hold_out(std::size_t item) const;
@@ -258,6 +262,8 @@ class Finder {
   /// times the number of candidates.
   double chance_of(std::size_t item, const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual,
                    double freedom) const;
+  /// The same for the columns of an effect beside other columns, which are fitted too.
+  double chance_beside(std::size_t item, const Eigen::MatrixXd& others) const;
 
   const std::vector<effects::Effect>& effects_;
   std::size_t most_effects_;

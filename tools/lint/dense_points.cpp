@@ -77,8 +77,10 @@ double step_with_enough_readings(const LineOfAxis& line, double spacing, std::si
 std::vector<DensePoints> dense_points(const model::Machine& machine,
                                       const std::vector<std::vector<double>>& positions,
                                       const std::vector<std::size_t>& readings) {
-  constexpr double kTimes = 3;  // points between two stations: fewer show no curve
+  constexpr double kTimes =
+      2;  // steps of the points between two stations: one point between them shows a curve
   constexpr double kMostParts = 100;
+  constexpr double kRounding = 0.01;
   constexpr std::size_t kEnough = 8;  // positions
   std::vector<DensePoints> list;
   for (const model::Table& table : machine.tables) {
@@ -95,7 +97,7 @@ std::vector<DensePoints> dense_points(const model::Machine& machine,
     const model::Axis& axis = machine.axes[table.axis];
     DensePoints one{
         axis.name, axis.rotary ? "deg" : "mm", at.size(), median_step(at), median_step(stations), 0, false};
-    if (!(one.station_spacing > kTimes * one.spacing)) continue;
+    if (!(one.station_spacing > (kTimes - kRounding) * one.spacing)) continue;
     const double least = (at.back() - at.front()) / kMostParts;
     const auto columns = static_cast<std::size_t>(std::count(table.free.begin(), table.free.end(), true));
     one.one_column = columns > 1 && line.readings == line.rows;

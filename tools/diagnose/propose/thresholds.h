@@ -146,6 +146,9 @@ struct AcceptanceThresholds {
   /// A larger contribution is cancelled by the contributions of other effects: the readings then determine
   /// only the sum of these effects.
   double most_of_error = 1 / levels.most;
+  /// Largest p-value of a cyclic error beside a curve between the stations of the table of its axis. Above
+  /// it the curve explains the readings as well.
+  double between_stations = levels.chance;
   /// For touch rows: largest change of a term that the touch error in its positions causes, divided by the
   /// touch error. The ratio of a term's change to the touch error is the slope of the term. Error terms of
   /// real machines have slopes below 0.01.
