@@ -170,6 +170,37 @@ TEST_F(ProbedBed, ExportFollowsTheTouchesWhereNothingDistinguishesBedFromAxes) {
   EXPECT_LT(largest_of_mesh_um(text::read_file(folder + "/out/vernier.cfg")), 15);
 }
 
+// Heights that contain the z_offset of a probe: the printer would print 2.15 mm above the bed.
+TEST_F(ProbedBed, HeightsFarFromZeroNeedAWordAboutTheirZero) {
+  std::string log;
+  for (int i = 0; i < 25; ++i)
+    log += "probe at " + std::to_string(50 + 30 * (i % 5)) + "," + std::to_string(50 + 30 * (i / 5)) +
+           " is z=2.15" + std::to_string(i % 3) + "\n";
+  text::write_file(folder + "/k.log", log);
+  text::write_file(folder + "/z.log", "[probe]\nz_offset: 2.150\n" + log);
+  ASSERT_EQ(
+      run("vernier new gantry --axis X:0:220 --axis Y:0:220 --axis Z:0:250 --artefact bed:plane -o p.xml && "
+          "vernier import printer k.log --offset=-38,-8 -o k.csv"),
+      0)
+      << said;
+  EXPECT_THAT(said, HasSubstr("note: the zero of the heights is not known"));
+  for (const std::string firmware : {"klipper", "rrf", "marlin"}) {
+    EXPECT_EQ(run("vernier export " + firmware + " p.xml --touches k.csv -o out"), 2) << said;
+    EXPECT_THAT(said, HasSubstr("have a mean of 2.15"));
+    EXPECT_THAT(said, HasSubstr("above the bed; nothing is written"));
+    EXPECT_FALSE(fs::exists(folder + "/out"));
+  }
+  EXPECT_EQ(run("vernier export klipper p.xml --touches k.csv -o middle --zero middle"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("0 in the middle of the mesh: set the offset of Z of the printer again"));
+  EXPECT_EQ(run("vernier export klipper p.xml --touches k.csv -o touches --zero touches"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("(mean height of the mesh 2.15"));
+  EXPECT_EQ(run("vernier import printer z.log -o z.csv && vernier export klipper p.xml --touches z.csv -o z"),
+            0)
+      << said;
+  EXPECT_THAT(said, HasSubstr("z_offset 2.150 of [probe] is subtracted from the heights"));
+  EXPECT_THAT(said, HasSubstr("(mean height of the mesh 0.00"));
+}
+
 /// The standard uncertainty of an angle that no reading determines is that of its scale: as a length over the
 /// travel it was printed as an error of 2.5 mm.
 TEST_F(ProbedBed, ASquarenessThatNoReadingDeterminesHasNoSizeInTheExport) {

@@ -93,6 +93,45 @@ TEST(PrinterFile, LogOfKlipperHasTimesAndTemperatures) {
             "X[mm],Y[mm],Z[mm],on\n");
 }
 
+// Klipper's bed_mesh.py stores z - z_offset for the older line; the newer line is relative already.
+TEST(PrinterFile, TheZOffsetOfTheConfigurationIsSubtractedFromTheOlderLine) {
+  const std::string config =
+      "===== Config file =====\n[bltouch]\nx_offset: -38\ny_offset: -8\nz_offset = 2.150\n=======\n";
+  const std::string touch = "probe at 48.000,23.000 is z=2.158\n";
+  const PrinterFile file = read_printer_file(config + touch, "klippy.log", {});
+  EXPECT_NEAR(file.table.numbers("Z").front(), 0.008, 1e-12);
+  EXPECT_EQ(file.zero, "z_offset 2.150 of [bltouch] is subtracted from the heights");
+  EXPECT_TRUE(file.zero_known);
+  const PrinterFile newer =
+      read_printer_file(config + "probe: at 10,15 bed will contact at z=0.008\n", "klippy.log", {});
+  EXPECT_EQ(newer.table.numbers("Z").front(), 0.008);
+  EXPECT_EQ(newer.zero, "");
+  // A restart writes the configuration again: each touch has the one before it.
+  std::string changed = config;
+  changed.replace(changed.find("2.150"), 5, "-0.70");
+  const PrinterFile both =
+      read_printer_file(config + touch + changed + "probe at 78,23 is z=-0.692\n", "klippy.log", {});
+  EXPECT_NEAR(both.table.numbers("Z").back(), 0.008, 1e-12);
+  EXPECT_THAT(both.zero, HasSubstr("; from line 14 on, z_offset -0.70 of [bltouch] is subtracted"));
+  EXPECT_THAT(read(config + "[probe]\nz_offset: 1\n" + touch),
+              HasSubstr("p.cfg:8: \"probe\": the sections [bltouch] and [probe] give different z_offset"));
+}
+
+TEST(PrinterFile, WithoutAZOffsetTheZeroOfTheHeightsIsNotKnown) {
+  const std::string touch = "probe at 48.000,23.000 is z=2.158\n";
+  const PrinterFile file = read_printer_file(touch, "klippy.log", {});
+  EXPECT_EQ(file.table.numbers("Z").front(), 2.158);
+  EXPECT_FALSE(file.zero_known);
+  EXPECT_THAT(file.zero, HasSubstr("the probe triggered (mean 2.158 mm), and the file has no z_offset"));
+  PrinterOptions options;
+  options.offset_mm = {-38, -8}, options.z_offset_mm = 2.15;
+  const PrinterFile stated = read_printer_file(touch, "klippy.log", options);
+  EXPECT_NEAR(stated.table.numbers("Z").front(), 0.008, 1e-12);
+  EXPECT_TRUE(stated.zero_known);
+  EXPECT_THAT(read("Bed X: 30.0 Y: 40.0 Z: 0.5\n", options),
+              HasSubstr("have the zero of the nozzle already"));
+}
+
 TEST(PrinterFile, LogOfMarlin) {
   PrinterOptions nozzle;
   nozzle.offset_mm = {0, 0};

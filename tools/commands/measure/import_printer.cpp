@@ -39,6 +39,7 @@ const char* name_of(importer::PrinterFile::Kind kind) {
 
 void run_printer(PrinterArguments& arguments) {
   if (!arguments.offset.empty()) arguments.options.offset_mm = {arguments.offset[0], arguments.offset[1]};
+  if (arguments.offset.size() > 2) arguments.options.z_offset_mm = arguments.offset[2];
   using Twist = importer::PrinterOptions::Twist;
   arguments.options.twist = arguments.twist == "add"      ? Twist::kAdd
                             : arguments.twist == "ignore" ? Twist::kIgnore
@@ -56,6 +57,8 @@ void run_printer(PrinterArguments& arguments) {
                                           {"profile", read.name},
                                           {"offset_mm", read.offset_mm},
                                           {"twist", read.twist},
+                                          {"zero", read.zero},
+                                          {"zero_known", read.zero_known},
                                           {"n_not_probed", read.not_probed},
                                           {"n_left_out", read.left_out},
                                           {"surveys", read.surveys},
@@ -83,6 +86,7 @@ void run_printer(PrinterArguments& arguments) {
         out,
         "note: the file does not state the offset of a probe: the rows are touches of the nozzle itself. "
         "If a probe touched, state --offset=X,Y in mm\n");
+  if (!read.zero.empty()) fmt::print(out, "{}{}\n", read.zero_known ? "" : "note: ", read.zero);
   if (!read.surveys.empty())
     fmt::print(
         out,
@@ -115,10 +119,11 @@ void add_printer_kind(CLI::App& kind) {
   kind.add_option(
           "--offset", arguments->offset,
           "offset of the probe from the nozzle, X,Y in mm (--offset=-38,-8), for a mesh, a height map "
-          "or a log with positions of the probe; default: the offset in the configuration of the file; "
-          "required if the file has none")
+          "or a log with positions of the probe; a third number is the z_offset of the probe, for a log of "
+          "Klipper with \"probe at\"; default: the offset in the configuration of the file; required if the "
+          "file has none")
       ->delimiter(',')
-      ->expected(2);
+      ->expected(2, 3);
   kind.add_option("--twist", arguments->twist,
                   "z_compensations of [axis_twist_compensation] (Klipper): included (the heights include "
                   "them), add (the touches are older: the command adds them), or ignore")

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "tools/commands/command.h"
@@ -30,12 +31,20 @@ using exchange::Firmware;
 
 struct PrinterArguments {
   ExchangeArguments common;
-  std::string steps, bed, profile;
+  std::string steps, bed, profile, zero;
   std::vector<std::string> touches;
 };
 
 /// Word of --bed: the heights do not follow a bed.
 constexpr const char* kNoBed = "none";
+
+/// Words of --zero.
+constexpr const char* kZeroOfTouches = "touches";
+constexpr const char* kZeroInTheMiddle = "middle";
+
+/// Mean height of the bed above which the zero of the touches is doubtful, mm: a z_offset of a probe is
+/// usually 0.5 to 5 mm, and a printer whose offset of Z is set has less than 0.3 mm.
+constexpr double kDoubtfulZero_mm = 0.5;
 
 /// The name of the profile. Two exports for one printer need two names: Klipper uses the later of two
 /// sections with one name.
@@ -269,6 +278,27 @@ void require_better_heights(const std::optional<exchange::TouchResidual>& touche
       touches->touches, touches->of_nozzle ? "nozzle" : "probe", touches->before_um, touches->after_um));
 }
 
+/// Takes the zero of the heights from the touches, or from the middle of the mesh. Heights far from 0 may
+/// contain the z_offset of a probe: the nozzle would print in the air or be driven into the bed.
+void set_zero(exchange::PrinterCorrection& correction, const PrinterArguments& arguments) {
+  exchange::HeightMesh& mesh = correction.mesh;
+  if (arguments.zero == kZeroInTheMiddle) {
+    mesh.z.array() -= mesh.at((mesh.x_low + mesh.x_high) / 2, (mesh.y_low + mesh.y_high) / 2);
+    return;
+  }
+  const double mean = mesh.z.mean();
+  if (arguments.zero == kZeroOfTouches || std::abs(mean) <= kDoubtfulZero_mm) return;
+  throw text::LimitNotMet(fmt::format(
+      "the heights of the touches have a mean of {:.3f} mm: if they contain the z_offset of a probe (a log "
+      "of "
+      "Klipper with \"probe at X,Y is z=Z\" and without configuration), the nozzle would print {:.3f} mm {}; "
+      "nothing is written. Import the log again with --offset=X,Y,Z (Z: z_offset of the configuration); or "
+      "state --zero middle (0 in the middle of the mesh, and the offset of Z of the printer is set again), "
+      "or "
+      "--zero touches if these are the heights of the bed above the zero of Z",
+      mean, std::abs(mean), mean > 0 ? "above the bed" : "too low, in the bed"));
+}
+
 void refuse_empty(const exchange::PrinterCorrection& correction, const model::Machine& machine) {
   if (!correction.empty()) return;
   const std::string remedy = remedy_of_unmeasured(machine);
@@ -287,15 +317,19 @@ std::string shown_um(double um) {
 
 void print_errors(const PrinterArguments& arguments, const PrinterModel& model,
                   const exchange::PrinterErrors& errors,
-                  const std::optional<exchange::TouchResidual>& touches) {
+                  const std::optional<exchange::TouchResidual>& touches, double mean_mm) {
   std::FILE* const out = human_stream(arguments.common.json);
   const std::optional<exchange::Bed>& bed = model.bed;
   if (bed && bed->shape) print_shape(out, *bed->shape);
   if (bed)
     fmt::print(out, "the heights follow the {} \"{}\", X {:g} to {:g} mm, Y {:g} to {:g} mm\n",
                bed->shape ? "bed" : "plane", bed->name, bed->low[0], bed->high[0], bed->low[1], bed->high[1]);
-  if (bed && bed->shape)
-    fmt::print(out, "the zero of the heights is that of the touches: the offset of Z of the printer stays\n");
+  if (bed && bed->shape && arguments.zero != kZeroInTheMiddle)
+    fmt::print(
+        out,
+        "the zero of the heights is that of the touches (mean height of the mesh {:.3f} mm): the offset "
+        "of Z of the printer stays\n",
+        mean_mm);
   else if (bed)
     fmt::print(out,
                "the heights are 0 in the middle of the mesh: set the offset of Z of the printer again\n");
@@ -371,6 +405,7 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   if (unmeasured_heights) features.mesh = false;
   exchange::PrinterCorrection correction = exchange::printer_correction(
       machine, axes, features, at, common.tolerance_um, bed, follows_touches ? &fitted : nullptr);
+  if (bed && bed->shape && correction.has_mesh()) set_zero(correction, arguments);
   const std::vector<exchange::ConfigurationFile> texts =
       exchange::firmware_files(firmware, present, machine.name, correction);
   const exchange::PrinterErrors errors = exchange::printer_errors(
@@ -381,7 +416,7 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
       bed ? exchange::touch_residual(machine, axes, correction, at, *bed) : std::nullopt;
   require_better_heights(touches);
   const Json files = write_folder(common, texts);
-  print_errors(arguments, model, errors, touches);
+  print_errors(arguments, model, errors, touches, correction.has_mesh() ? correction.mesh.z.mean() : 0);
   print_straight_parts(human_stream(common.json), correction);
   print_include(human_stream(common.json), texts);
   Json extra = errors_json(errors);
@@ -451,6 +486,13 @@ void add_printer(CLI::App* parent, const char* name, const char* what, const cha
             "measurement files with touches of the bed: the heights contain the shape of the bed, at the "
             "nozzle also where an offset probe touched; may be repeated")
         ->type_name(kReads);
+  if (firmware != Firmware::kGrbl)
+    command
+        ->add_option("--zero", arguments->zero,
+                     "zero of the heights with --touches: touches (the heights as they were measured, the "
+                     "offset of Z of the printer stays), or middle (0 in the middle of the mesh); default: "
+                     "touches, refused if their mean is more than 0.5 mm")
+        ->check(CLI::IsMember({kZeroOfTouches, kZeroInTheMiddle}));
   command->footer(
       "The command writes the corrections of squareness, heights and steps per mm that the firmware "
       "supports, and prints the\n"

@@ -229,6 +229,55 @@ std::array<double, 2> offset_in(const std::map<std::string, Section>& sections, 
   return offset;
 }
 
+// ---- Klipper: the zero of the heights
+
+/// z_offset of a probe in a configuration: the height of the nozzle at which the probe triggers on the bed.
+struct ZOffset {
+  std::string section;
+  std::string shown;  // the number as the configuration has it
+  double mm = 0;
+};
+
+/// Throws InputError if two sections give different values: nothing says which probe touched. `before`: lines
+/// of the file before the configuration.
+std::optional<ZOffset> z_offset_in(const std::string& text, const std::string& file, std::size_t before) {
+  std::optional<ZOffset> result;
+  for (const auto& [name, section] : sections_of(text)) {
+    const auto found = section.find("z_offset");
+    if (name.starts_with(kMesh) || found == section.end()) continue;
+    const text::Place place{file, before + found->second.line};
+    const ZOffset own{name, found->second.value, number_in(place, found->second.value)};
+    if (result && result->mm != own.mm)
+      throw text::InputError(
+          place, name,
+          fmt::format("the sections [{}] and [{}] give different z_offset of a probe; give the offset of the "
+                      "probe that touched with --offset=X,Y,Z",
+                      result->section, name));
+    result = own;
+  }
+  return result;
+}
+
+/// The z_offset of each configuration in a log, by the number of the first line in which it is valid. A
+/// restart of the printer writes the configuration again.
+std::map<std::size_t, ZOffset> z_offsets_in(const std::string& text, const std::string& file) {
+  std::map<std::size_t, ZOffset> result;
+  std::string block;
+  std::size_t number = 0, begin = 0;
+  const auto end_block = [&] {
+    if (const auto found = z_offset_in(block, file, begin)) result.emplace(begin, *found);
+    block.clear();
+    begin = number;
+  };
+  for (const std::string& line : text::parts_of(text, '\n')) {
+    if (line.find("= Config file =") != std::string::npos) end_block();
+    block += line + '\n';
+    ++number;
+  }
+  end_block();
+  return result;
+}
+
 // ---- Klipper: compensation of the axis twist
 
 /// Heights that klippy/extras/axis_twist_compensation.py adds to the touches of the probe, over X.
@@ -442,7 +491,9 @@ class ProbeLog {
     configured_ = configured_points(text);
     note_begun_again();
     note_incomplete();
-    return chosen();
+    std::vector<Touch> touches = chosen();
+    take_zero(touches, text);
+    return touches;
   }
 
  private:
@@ -588,6 +639,47 @@ class ProbeLog {
     }
     for (Touch& one : touches_)
       for (std::size_t k = 0; one.of_probe && k < 2; ++k) one.axes[k] -= result_.offset_mm[k];
+  }
+
+  /// Klipper's older line has the height of the nozzle at which the probe triggered. The bed is lower by the
+  /// z_offset of the probe: the firmware subtracts it when it makes a mesh of these touches.
+  void take_zero(std::vector<Touch>& touches, const std::string& text) {
+    const auto stated = options_.z_offset_mm ? std::map<std::size_t, ZOffset>{} : z_offsets_in(text, file_);
+    std::string used;  // the last configuration that was named
+    double sum = 0;
+    std::size_t unknown = 0;
+    for (Touch& one : touches) {
+      if (one.of_probe) continue;
+      if (options_.z_offset_mm) {
+        one.axes[2] -= *options_.z_offset_mm;
+        result_.zero = fmt::format("the z_offset {:g} of --offset is subtracted from the heights",
+                                   *options_.z_offset_mm);
+        continue;
+      }
+      auto valid = stated.upper_bound(one.line);
+      if (valid != stated.begin()) --valid;
+      if (valid == stated.end()) {
+        sum += one.axes[2];
+        ++unknown;
+        continue;
+      }
+      one.axes[2] -= valid->second.mm;
+      const std::string name = fmt::format("z_offset {} of [{}]", valid->second.shown, valid->second.section);
+      if (name == used) continue;
+      result_.zero += result_.zero.empty()
+                          ? name + " is subtracted from the heights"
+                          : fmt::format("; from line {} on, {} is subtracted", one.line, name);
+      used = name;
+    }
+    if (unknown == 0) return;
+    result_.zero_known = false;
+    result_.zero = fmt::format(
+        "the zero of the heights is not known: the lines \"probe at X,Y is z=Z\" state the height at which "
+        "the "
+        "probe triggered (mean {:.3f} mm), and the file has no z_offset of the probe. If the configuration "
+        "of "
+        "the printer has a z_offset, give it with --offset=X,Y,Z",
+        sum / static_cast<double>(unknown));
   }
 
   /// The largest difference of a temperature between two touches, degC.
@@ -752,6 +844,11 @@ PrinterFile read_printer_file(const std::string& text, const std::string& file,
   } else {
     touches = ProbeLog(result, file, options).read(text);
   }
+  if (options.z_offset_mm && result.zero.empty())
+    throw text::InputError({file, 0}, "--offset",
+                           "the heights of this file have the zero of the nozzle already: a third number of "
+                           "--offset is only for "
+                           "a log with lines \"probe at X,Y is z=Z\"; give --offset=X,Y");
   if (touches.empty())
     throw text::InputError(
         {file, 0}, "touches",

@@ -16,6 +16,9 @@ struct PrinterOptions {
   std::string artefact = "bed";  // artefact that the nozzle or the probe touched
   std::optional<std::array<double, 2>> offset_mm;  // position of the probe minus position of the nozzle, X
                                                    // and Y; default: the value in the file
+  std::optional<double> z_offset_mm;               // height of the nozzle at which the probe triggers on the
+                                                   // bed, for Klipper's older line; default: z_offset in the
+                                                   // file
   std::optional<double> u_um;                      // standard uncertainty of a touch; no value: the table has
                                                    // no column u
   /// How the compensation of an axis twist (Klipper, z_compensations) applies to the touches.
@@ -40,6 +43,9 @@ struct PrinterFile {
   std::array<double, 2> offset_mm = {};  // probe offset that was used
   bool twist = false;                    // the heights are those of the nozzle by z_compensations
   bool offset_known = true;              // false: a log of nozzle positions without a probe offset
+  std::string zero;                      // what was subtracted from the heights, or that nobody knows their
+                                         // zero; empty: the file has heights of the nozzle
+  bool zero_known = true;                // false: the heights contain the z_offset of a probe
   std::size_t not_probed = 0;            // number of positions of a height map without a reading
   std::size_t left_out = 0;              // number of touches in a log that the printer discarded
   std::string surveys;                   // of a log whose surveys are read as one table: the list of them;
@@ -66,9 +72,11 @@ bool is_printer_file(const std::string& bytes);
 /// axes is then the touched point, and the table has no columns probeX and probeY. Touches during levelling,
 /// and repeated touches at one position (PROBE_ACCURACY), are excluded. A survey with fewer
 /// points than another one of the log, or than its configuration states, and a survey that begins again at
-/// its first point, get a note. If a log has several surveys of the bed, and not their temperatures tell them
-/// apart, the option `series` is necessary. If the file is not valid, throws InputError with file, line and
-/// word.
+/// its first point, get a note. Klipper's older line ("probe at X,Y is z=Z") has the height of the nozzle at
+/// which the probe triggered: z_offset of the options, or of the last configuration before the touch, is
+/// subtracted, as the firmware does for its mesh. If a log has several surveys of the bed, and not their
+/// temperatures tell them apart, the option `series` is necessary. If the file is not valid, throws
+/// InputError with file, line and word.
 PrinterFile read_printer_file(const std::string& text, const std::string& file,
                               const PrinterOptions& options);
 
