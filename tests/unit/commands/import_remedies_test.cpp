@@ -391,6 +391,27 @@ TEST_F(ImportRemedies, TheDirectionsOfPointsFollowFromTheOrderOfTheirList) {
                              HasSubstr("P3,50,20,0,-1,1\n")));
 }
 
+// The lines of the tracker have another order than the measurement, and P2 is lost.
+TEST_F(ImportRemedies, TheDirectionsOfPointsInAnotherOrderAreThoseOfTheList) {
+  text::write_file(folder + "/list.csv", "point,X[mm],Y[mm]\nP1,0,0\nP2,100,0\nP3,50,20\nP4,120,10\n");
+  const std::string call =
+      "vernier import tracker points.txt --machine m.xml --column 1=point --column '2=x[mm]' --column "
+      "'3=y[mm]' --column '4=z[mm]' --directions from-order -o read.csv";
+  text::write_file(folder + "/points.txt", "P4 120 10 0\nP3 50 20 0\nP1 0 0 0\n");
+  ASSERT_EQ(run(call + " --nominal list.csv"), 0) << said;
+  EXPECT_THAT(text::read_file(folder + "/read.csv"),
+              testing::AllOf(HasSubstr("P4,120,10,0,1,-1\n"), HasSubstr("P3,50,20,0,-1,1\n"),
+                             HasSubstr("P1,0,0,0,0,0\n")));
+  EXPECT_THAT(said,
+              HasSubstr("note: the approach directions (dirX, dirY) follow from the order of the positions "
+                        "in list.csv"));
+  // Runs divide the list: the first position of a run has no direction.
+  text::write_file(folder + "/points.txt", "P4 120 10 0 b\nP3 50 20 0 b\nP1 0 0 0 a\n");
+  ASSERT_EQ(run(call + " --nominal list.csv --column 5=run"), 0) << said;
+  EXPECT_THAT(text::read_file(folder + "/read.csv"),
+              testing::AllOf(HasSubstr("P4,120,10,0,b,1,-1\n"), HasSubstr("P3,50,20,0,b,0,0\n")));
+}
+
 TEST_F(ImportRemedies, OfATrackerReadTheFileThatIsThere) {
   text::write_file(folder + "/pts.txt", "// SA\nP1, 0.01, 400, 0\nP2, 100, 400.01, 0\nP3, 200, 400, 0.01\n");
   const std::string call =

@@ -189,15 +189,29 @@ void print_joined(std::FILE* out, const importer::NominalTable& joined, const st
              joined.unused_lines.size() > kPrinted ? ", ..." : "");
 }
 
+/// The note about directions that follow from an order: which one, and what it assumes.
+std::string note_of_order(const std::vector<std::string>& columns, const SurveyArguments& arguments) {
+  std::string names;
+  for (const std::string& one : columns) names += (names.empty() ? "" : ", ") + one;
+  return fmt::format(
+      "the approach directions ({}) follow from the order of the {} in {}: each axis has the direction of "
+      "its "
+      "last motion{}. Check that this is the order of the measurement",
+      names, arguments.nominal.empty() ? "points" : "positions",
+      arguments.nominal.empty() ? arguments.file : arguments.nominal,
+      arguments.nominal.empty() ? "" : ", also of the motion to a position without a point");
+}
+
 /// The table with the positions of the axes, and where they came from.
 struct Survey {
   importer::ImportTable table;
   std::optional<importer::LoggedTable> logged;
   std::optional<importer::NominalTable> joined;
+  std::string note;  // about the directions; empty: none
 };
 
 void write_survey(const std::string& kind, const SurveyArguments& arguments, const Survey& survey) {
-  const auto& [table, logged, joined] = survey;
+  const auto& [table, logged, joined, note] = survey;
   const std::string text = importer::measurement_csv(table);
   Json result = summary(kind, table);
   if (logged) result["pairing"] = pairing_json(*logged);
@@ -215,9 +229,13 @@ void write_survey(const std::string& kind, const SurveyArguments& arguments, con
     result["n_excluded"] = read.excluded;
   }
   text::write_file(arguments.output.csv_path, text);
-  write_json(arguments.output.json_path, result);
   if (logged) print_pairing(human_stream(arguments.output.json_path), *logged, arguments.file);
   if (joined) print_joined(human_stream(arguments.output.json_path), *joined, arguments.nominal);
+  if (!note.empty()) {
+    result["note"] = note;
+    fmt::print(human_stream(arguments.output.json_path), "note: {}\n", note);
+  }
+  write_json(arguments.output.json_path, result);
   fmt::print(human_stream(arguments.output.json_path), "{}: {} rows ({} fit, {} check)\n",
              arguments.output.csv_path, table.line.size(), result["n_fit"].get<std::size_t>(),
              result["n_check"].get<std::size_t>());
@@ -270,7 +288,11 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
       for (const model::Axis& axis : model::read_machine(arguments.machine).axes)
         wishes.axes.push_back(axis.name);
     const importer::Guess guess(wishes);
-    importer::add_directions_from_order(table, [&](const std::string& name) { return guess.is_axis(name); });
+    const auto is_axis = [&](const std::string& name) { return guess.is_axis(name); };
+    survey.note = note_of_order(survey.joined ? importer::add_directions_of_list(table, survey.joined->list,
+                                                                                 survey.joined->rows, is_axis)
+                                              : importer::add_directions_from_order(table, is_axis),
+                                arguments);
   }
   if (arguments.check_every > 0) importer::set_roles(table, arguments.check_every);
   write_survey(kind_name, arguments, survey);
@@ -296,9 +318,11 @@ void add_survey_options(CLI::App& kind, const std::shared_ptr<SurveyArguments>& 
       "mark of a comment: lines that begin with this text are skipped; none: no comments; default: #");
   kind.add_flag("--header", arguments->header,
                 "the first line contains the column names (implied if --column uses a name)");
-  kind.add_option("--directions", arguments->directions,
-                  "from-order: an axis without a column of directions (dirX) has the direction of its last "
-                  "motion in the run; the rows must be in the order of the measurement")
+  kind.add_option(
+          "--directions", arguments->directions,
+          "from-order: an axis without a column of directions (dirX) has the direction of its last "
+          "motion in the run; the points must be in the order of the measurement (with --nominal: the "
+          "positions of the list)")
       ->check(CLI::IsMember({importer::kFromOrder}));
   kind.add_option("--check-every", arguments->check_every, "every Nth row gets the role check")
       ->check(CLI::Range(2, 1000000));

@@ -116,6 +116,18 @@ ImportTable joined(const ImportTable& points, const ListedRows& list, const std:
   return table;
 }
 
+/// The positions of all rows of the list, also of those without a point.
+ImportTable all_positions(const ImportTable& points, const ListedRows& list, const model::Machine& machine) {
+  ImportTable positions{list.reading.sheet.file, {}, {}};
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < list.rows.size(); ++i) {
+    positions.line.push_back(list.place(i).line);
+    all.push_back(i);
+  }
+  add_positions(positions, points, list, all, machine);
+  return positions;
+}
+
 ToolPlace place_of(const model::Machine& machine) {
   return machine.tool_shifts.empty() ? ToolPlace::kOfTheMachine : ToolPlace::kUnknown;
 }
@@ -129,14 +141,8 @@ std::vector<std::size_t> rows_by_distances(const ImportTable& points, const List
     return points.find(axis.name) != nullptr;
   });
   if (!measured || has_axes) return {};
-  ImportTable positions{list.reading.sheet.file, {}, {}};
-  std::vector<std::size_t> all;
-  for (std::size_t i = 0; i < list.rows.size(); ++i) {
-    positions.line.push_back(list.place(i).line);
-    all.push_back(i);
-  }
-  add_positions(positions, points, list, all, machine);
-  return poses_in_order(nominal_poses(positions, machine), *measured, place_of(machine), tolerance_mm);
+  return poses_in_order(nominal_poses(all_positions(points, list, machine), machine), *measured,
+                        place_of(machine), tolerance_mm);
 }
 
 /// How the rows of a list were found.
@@ -324,6 +330,8 @@ NominalTable with_nominal(const ImportTable& points, const NominalList& nominal,
   for (std::size_t i = 0; i < used.size(); ++i)
     if (used[i] == 0) result.unused_lines.push_back(list.place(i).line);
   result.table = joined(points, list, rows.rows, machine);
+  result.list = all_positions(points, list, machine);
+  result.rows = rows.rows;
   check_distances(result, points, list, nominal, machine, tolerance_mm);
   return result;
 }

@@ -14,9 +14,11 @@ namespace vernier::importer {
 /// Points of an instrument with the nominal axis positions of a separate list.
 struct NominalTable {
   ImportTable table;
-  std::string names;          // column of point names that joined both; empty: they have none
-  bool by_distances = false;  // joined by the order and the distances: points were missing, without names
-                              // (false and no names: joined by row number)
+  ImportTable list;               // the positions of the axes of all rows of the list
+  std::vector<std::size_t> rows;  // the row of the list for each row of the table
+  std::string names;              // column of point names that joined both; empty: they have none
+  bool by_distances = false;      // joined by the order and the distances: points were missing, without names
+                                  // (false and no names: joined by row number)
   std::vector<std::size_t> unused_lines;  // lines of the list whose position has no point
   std::string note;                       // what was assumed about the list; empty: nothing
   std::optional<double> rms_mm;  // rms distance of the points from the nominal tool points, after the best

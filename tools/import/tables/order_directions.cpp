@@ -40,7 +40,47 @@ std::vector<std::string> sequences_of(const ImportTable& table) {
   return names;
 }
 
+/// The sequence of each row of a list by its points. A row without a point continues the sequence before it.
+/// Empty: one sequence, because a position has points of several runs.
+std::vector<std::string> sequences_of_list(const ImportTable& table, std::size_t count,
+                                           const std::vector<std::size_t>& rows) {
+  const std::vector<std::string> own = sequences_of(table);
+  std::vector<std::string> names(count);
+  std::vector<char> stated(count, 0);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (stated[rows[i]] != 0 && names[rows[i]] != own[i]) return std::vector<std::string>(count);
+    names[rows[i]] = own[i];
+    stated[rows[i]] = 1;
+  }
+  for (std::size_t i = 1; i < count; ++i)
+    if (stated[i] == 0 && stated[i - 1] != 0) names[i] = names[i - 1], stated[i] = 1;
+  for (std::size_t i = count; i-- > 1;)
+    if (stated[i - 1] == 0) names[i - 1] = names[i], stated[i - 1] = 1;
+  return names;
+}
+
 }  // namespace
+
+std::vector<std::string> add_directions_of_list(ImportTable& table, ImportTable list,
+                                                const std::vector<std::size_t>& rows,
+                                                const std::function<bool(const std::string&)>& is_axis) {
+  // A column of directions of the points is not changed: as if the list had it.
+  const std::size_t count = list.line.size();
+  for (const ImportTable::Column& column : table.columns)
+    if (const std::string name = format::axis_column(format::AxisQuantity::kSense, column.name);
+        list.find(column.name) != nullptr && table.find(name) != nullptr)
+      list.columns.push_back({name, "", std::vector<std::string>(count)});
+  if (list.find(format::columns::kRun) == nullptr)
+    list.columns.push_back({format::columns::kRun, "", sequences_of_list(table, count, rows)});
+  std::vector<std::string> names = add_directions_from_order(list, is_axis);
+  for (const std::string& name : names) {
+    ImportTable::Column added{name, "", {}};
+    const ImportTable::Column& column = *list.find(name);
+    for (const std::size_t row : rows) added.cells.push_back(column.cells[row]);
+    table.columns.push_back(std::move(added));
+  }
+  return names;
+}
 
 std::vector<std::string> add_directions_from_order(ImportTable& table,
                                                    const std::function<bool(const std::string&)>& is_axis) {
