@@ -105,6 +105,34 @@ TEST(ColumnsBeside, ThatAreNotReadAreNamed) {
               Not(HasSubstr("beside the readings")));
 }
 
+TEST(ColumnsBeside, NamesOfRunsAndPointsOfAnotherFormAreQuoted) {
+  const auto table = [](const std::string& heading, const std::vector<std::string>& names) {
+    std::string text = "X Soll [mm];Richtung;" + heading + ";Abweichung X [µm]\n";
+    for (std::size_t i = 0; i < names.size(); ++i)
+      for (const char* const row : {"0;+;", "70;+;"}) text += row + names[i] + ";" + std::to_string(i) + "\n";
+    return text;
+  };
+  for (const char* const odd :
+       {"Probelauf", "1 (Einfahren)", "Test", "2*", "Warmlauf", "dry run", "2 umgekehrt"}) {
+    EXPECT_THAT(read(table("Lauf", {odd, "2", "3"})),
+                HasSubstr("note: column \"Lauf\": \"" + std::string(odd) +
+                          "\" in 2 rows (the others: 2, 3). Are these rows valid readings?"));
+  }
+  EXPECT_THAT(read(table("Lauf", {"Probelauf", "Hauptlauf"})), HasSubstr("\"Probelauf\" in 2 rows"));
+  EXPECT_THAT(read(table("Punkt", {"P0", "P1", "P2 n. verw.", "P3"})),
+              HasSubstr("column \"Punkt\": \"P2 n. verw.\" in 2 rows (the others: P0, P1, P3)"));
+  for (const std::vector<std::string>& usual : {std::vector<std::string>{"1", "2", "3"},
+                                                {"S1", "S2", "3"},
+                                                {"forward", "back", "1"},
+                                                {"1 vor", "2 vor", "1 zurück"},
+                                                {"Serie 1", "Serie 2", "Serie 3"},
+                                                {"kalt", "warm", "heiß"},
+                                                {"Lauf 1", "Lauf 2", "3"},
+                                                {"A", "B", "1"},
+                                                {"Test 1", "Test 2", "Test 3"}})
+    EXPECT_THAT(read(table("Lauf", usual)), Not(HasSubstr("Are these rows valid"))) << usual.front();
+}
+
 TEST(ColumnsBeside, TextsRightOfTheHeadingsAreTextsOfTheTable) {
   EXPECT_THAT(read("X Soll [mm];Abweichung X [µm];;Vorzeichen: Soll - Ist\n0;3,3;;\n70;6,4;;\n"),
               AllOf(HasSubstr("\n0,-0.0033"), HasSubstr("by the text \"Vorzeichen: Soll - Ist\"")));

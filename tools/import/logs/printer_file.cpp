@@ -258,8 +258,8 @@ std::optional<ZOffset> z_offset_in(const std::string& text, const std::string& f
   return result;
 }
 
-/// The z_offset of each configuration in a log, by the number of the first line in which it is valid. A
-/// restart of the printer writes the configuration again.
+/// The z_offset of each configuration in a log, by the number of lines before the configuration. A restart of
+/// the printer writes the configuration again.
 std::map<std::size_t, ZOffset> z_offsets_in(const std::string& text, const std::string& file) {
   std::map<std::size_t, ZOffset> result;
   std::string block;
@@ -656,7 +656,7 @@ class ProbeLog {
                                    *options_.z_offset_mm);
         continue;
       }
-      auto valid = stated.upper_bound(one.line);
+      auto valid = stated.lower_bound(one.line);  // the first configuration behind the touch
       if (valid != stated.begin()) --valid;
       if (valid == stated.end()) {
         sum += one.axes[2];

@@ -10,6 +10,7 @@
 #include "tools/format/units.h"
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/columns/columns_beside.h"
+#include "tools/import/columns/odd_names.h"
 #include "tools/import/columns/signed_positions.h"
 #include "tools/import/columns/stated_order.h"
 #include "tools/import/columns/values_beside.h"
@@ -490,6 +491,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   note_exchanged_headings(result.sheet, result.table, result.columns);
   note_unused_texts(result.sheet, written, texts, result.columns);
   note_heading_words(result.sheet, written, result.table, result.columns, result.wishes, words.found);
+  note_odd_names(result.sheet, result.table, result.columns);
   note_columns_beside(result.sheet, result.table, result.columns, result.wishes);
   if (result.wishes.directions_from_order)
     result.sheet.notes.push_back(
