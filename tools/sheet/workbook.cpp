@@ -12,6 +12,8 @@
 #include <pugixml.hpp>
 
 #include "tools/sheet/dates.h"
+#include "tools/sheet/heading.h"
+#include "tools/sheet/number_format.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
 #include "tools/text/numbers.h"
@@ -274,6 +276,69 @@ class Reader {
       const unsigned id = style.attribute("numFmtId").as_uint();
       const auto own = formats.find(id);
       is_date_.push_back(own == formats.end() ? is_date_format(id) : is_date_format(own->second));
+      formats_.push_back(is_date_.back()        ? ""
+                         : own == formats.end() ? std::string(built_in_format(id))
+                                                : own->second);
+    }
+  }
+
+  /// The number format of a cell with a number, if it shows more than the number; empty: none.
+  std::string telling_format(const pugi::xml_node& cell) const {
+    const auto style = static_cast<std::size_t>(cell.attribute("s").as_uint());
+    if (!is_number(cell) || style >= formats_.size() || number_format(formats_[style]).plain()) return "";
+    return formats_[style];
+  }
+
+  /// Cells of one column with one number format.
+  struct FormattedCells {
+    std::size_t count = 0;
+    std::size_t row = 0;  // of the first cell, index
+    std::string first;    // its reference
+  };
+  using Formats = std::map<std::pair<std::size_t, std::string>, FormattedCells>;
+
+  /// Gives headings without a unit the unit that the number format of their column shows, and says what else
+  /// the formats show.
+  static void look_at_formats(WorkbookSheet& sheet, const Formats& formats) {
+    for (const auto& [key, cells] : formats) {
+      const auto& [column, code] = key;
+      const auto is_filled = [&, k = column](std::size_t row) {
+        return k < sheet.rows[row].size() && !sheet.rows[row][k].empty();
+      };
+      std::size_t numbers = 0;  // of the column from the first of these cells on
+      for (std::size_t row = cells.row; row < sheet.rows.size(); ++row)
+        numbers += is_filled(row) && sheet.is_number[row][column] != 0 ? 1 : 0;
+      std::string* heading = nullptr;
+      for (std::size_t row = cells.row; row-- > 0 && heading == nullptr;)
+        if (is_filled(row) && sheet.is_number[row][column] == 0) heading = &sheet.rows[row][column];
+      if (heading == nullptr && cells.count < 2) continue;  // a number beside its label
+      const NumberFormat format = number_format(code);
+      const auto unit = unit_meant(format.text);
+      const bool only_unit = unit && !format.percent && !format.thousands && !format.other_sign;
+      if (heading != nullptr) {
+        const Heading parsed = parse_heading(*heading);
+        const std::string of_heading = parsed.unit.empty() ? unit_meant(*heading).value_or("") : parsed.unit;
+        if (only_unit && of_heading == *unit) continue;
+        if (format.percent && heading->find('%') != std::string::npos) continue;
+        if (only_unit && of_heading.empty() && parsed.unknown_unit.empty() && numbers == cells.count) {
+          sheet.formats.push_back(fmt::format(
+              "the heading \"{}\" has no unit: [{}] is the unit of the number format {} of its cells",
+              *heading, *unit, code));
+          *heading += " [" + *unit + "]";
+          continue;
+        }
+      }
+      std::string shown;
+      const auto add = [&](const std::string& words) { shown += (shown.empty() ? "" : ", ") + words; };
+      if (!format.text.empty()) add("\"" + format.text + "\"");
+      if (format.percent) add("the number times 100");
+      if (format.thousands) add("the number divided by 1000");
+      if (format.other_sign) add("another sign");
+      sheet.formats.push_back(fmt::format(
+          "the number format {} of {} cell{} from {} on shows {}: the numbers are read as they are stored "
+          "({}). "
+          "If the cells mean what they show, change the numbers or the unit in the heading in the file",
+          code, cells.count, cells.count == 1 ? "" : "s", cells.first, shown, sheet.rows[cells.row][column]));
     }
   }
 
@@ -312,6 +377,7 @@ class Reader {
     look_at_comments(sheet, part);
     look_at_printed_header(sheet, document.document_element());
     std::size_t row_number = 0, filled = 0, empty = 0;
+    Formats formats;
     for (const pugi::xml_node row : child(document.document_element(), "sheetData").children()) {
       sheet.hidden_rows += row.attribute("hidden").as_bool() ? 1 : 0;
       row_number = row.attribute("r") ? row.attribute("r").as_uint() : row_number + 1;
@@ -345,6 +411,11 @@ class Reader {
         ++filled;
         cells[column] = value;
         numbers[column] = is_number(cell) ? 1 : 0;
+        if (const std::string format = telling_format(cell); !format.empty()) {
+          FormattedCells& cells_of_format = formats[{column, format}];
+          if (++cells_of_format.count == 1)
+            cells_of_format.row = sheet.rows.size(), cells_of_format.first = cell.attribute("r").value();
+        }
         if (is_struck(cell))
           sheet.unread.push_back(
               fmt::format("the struck-out cell {} \"{}\"", cell.attribute("r").value(), value));
@@ -360,6 +431,7 @@ class Reader {
       sheet.is_number.push_back(std::move(numbers));
       sheet.line.push_back(row_number);
     }
+    look_at_formats(sheet, formats);
     for (const pugi::xml_node merge : child(document.document_element(), "mergeCells").children())
       fill_merged(sheet, merge.attribute("ref").value());
     return sheet;
@@ -451,6 +523,7 @@ class Reader {
   pugi::xml_document workbook_;
   std::vector<std::string> strings_;
   std::vector<bool> is_date_, is_struck_;  // of each cell style
+  std::vector<std::string> formats_;       // of each cell style, the code of its numbers; empty: plain
   bool from_1904_ = false;
 };
 

@@ -11,6 +11,7 @@
 #include "tools/sheet/sheet.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
+#include "tools/text/words.h"
 
 namespace vernier::workbook_test {
 
@@ -105,6 +106,42 @@ TEST(Workbook, NumbersStoredAsTextMakeATableToo) {
 
 const std::string kRowsOfNumbers =
     "<row r=\"1\"><c><v>1</v></c><c><v>2</v></c></row><row r=\"2\"><c><v>3</v></c><c><v>4</v></c></row>";
+
+TEST(Workbook, NumberFormatsThatShowMoreThanTheNumber) {
+  const auto read = [](const std::string& code, const std::string& heading) {
+    const std::string styles = "<numFmts><numFmt numFmtId=\"164\" formatCode='" + code +
+                               "'/></numFmts><cellXfs><xf/><xf numFmtId=\"164\"/></cellXfs>";
+    std::string rows =
+        "<row r=\"1\"><c r=\"A1\" t=\"inlineStr\"><is><t>Lauf</t></is></c><c r=\"B1\" "
+        "t=\"inlineStr\"><is><t>" +
+        heading + "</t></is></c></row>";
+    for (const std::string row : {"2", "3"})
+      rows += "<row r=\"" + row + "\"><c r=\"A" + row + "\"><v>1</v></c><c r=\"B" + row +
+              "\" s=\"1\"><v>-1.5</v></c></row>";
+    return read_workbook(workbook_of("", rows, styles), "b.xlsx", "");
+  };
+  const auto note = [&](const std::string& code, const std::string& heading) {
+    const WorkbookSheet sheet = read(code, heading);
+    return text::joined(sheet.formats, "; ");
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(note("0.0\" x 0,1 µm\"", "Abw. [µm]"),
+              HasSubstr("of 2 cells from B2 on shows \"x 0,1 µm\": the numbers are read as they are stored "
+                        "(-1.5)"));
+  EXPECT_THAT(note("\"-\"0.0;\"+\"0.0", "Abw. [µm]"), HasSubstr("shows another sign"));
+  EXPECT_THAT(note("0.0;0.0", "Abw. [µm]"), HasSubstr("shows another sign"));
+  EXPECT_THAT(note("0%", "Abw. [µm]"), HasSubstr("shows the number times 100"));
+  EXPECT_THAT(note("0.0,", "Abw. [µm]"), HasSubstr("shows the number divided by 1000"));
+  EXPECT_THAT(note("0.000\" in\"", "X [mm]"), HasSubstr("shows \"in\""));
+  // A heading without a unit gets that of the format.
+  EXPECT_EQ(read("0.000\" in\"", "X").rows[0][1], "X [in]");
+  EXPECT_THAT(note("0.000\" in\"", "X"), HasSubstr("the heading \"X\" has no unit: [in] is the unit"));
+  for (const char* const plain :
+       {"General", "0.000", "#,##0.00", "0.00E+00", "+0.0;-0.0;0.0", "0.0;[Red]-0.0", "0.0_);(0.0)",
+        "_-* #,##0.00_-;-* #,##0.00_-;_-* \"-\"??_-;_-@_-", "0.00_ ;[Red]\\-0.00\\ ", "0.0\" µm\""})
+    EXPECT_EQ(note(plain, "Abw. [µm]"), "") << plain;
+  EXPECT_EQ(note("0%", "Feuchte [%]"), "");
+}
 
 TEST(Workbook, WhatNoCellShowsIsQuoted) {
   const std::string hidden = "<row><c t=\"inlineStr\"><is><t>Soll - Ist</t></is></c><c><v>7</v></c></row>";
