@@ -428,6 +428,24 @@ std::optional<std::pair<std::string, std::string>> number_and_unit(std::string_v
   return std::pair(*number, *unit);
 }
 
+namespace {
+
+/// "Abweichung X µm (minus = zu weit)": the unit before a remark in brackets. "in" there is a word.
+void take_unit_before_remark(Heading& heading) {
+  const auto open = heading.text.rfind(" (");
+  if (!heading.text.ends_with(')') || open == std::string::npos || !heading.unknown_unit.empty()) return;
+  const std::string before = text::trimmed(heading.text.substr(0, open));
+  const auto blank = before.rfind(' ');
+  const std::string word = blank == std::string::npos ? before : before.substr(blank + 1);
+  const auto unit = unit_meant(word);
+  if (!unit || !word.ends_with('m') || word.size() < 2) return;  // "in" and letters are words
+  heading.unit = *unit;
+  const std::string name = blank == std::string::npos ? "" : text::trimmed(before.substr(0, blank));
+  heading.name = text::trimmed(name + heading.text.substr(open));
+}
+
+}  // namespace
+
 Heading parse_heading(std::string_view cell) {
   Heading heading;
   heading.text = text::trimmed(cell);
@@ -483,6 +501,7 @@ Heading parse_heading(std::string_view cell) {
     take_factor(heading, "", true);
     return heading;
   }
+  take_unit_before_remark(heading);
   return heading;
 }
 

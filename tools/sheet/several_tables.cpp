@@ -113,9 +113,60 @@ std::vector<std::size_t> tables_of(const Sheet& sheet) {
   return first;
 }
 
+std::vector<TableBeside> tables_side_by_side(const Sheet& sheet) {
+  constexpr std::size_t kFewest = 3;  // columns: a position, and two columns of readings
+  const std::size_t data = data_from(sheet, 0);
+  if (data < 2 || data == sheet.rows.size()) return {};
+  const std::vector<std::string>&headings = sheet.rows[data - 1], &titles = sheet.rows[data - 2];
+  std::vector<TableBeside> tables;
+  bool open = false;
+  for (std::size_t k = 0; k < headings.size(); ++k) {
+    const bool empty = std::all_of(sheet.rows.begin() + static_cast<std::ptrdiff_t>(data - 2),
+                                   sheet.rows.end(), [&](const auto& cells) { return cells[k].empty(); });
+    if (!empty && !open) tables.push_back({k, k, titles[k]});
+    open = !empty;
+    if (open) tables.back().end = k + 1;
+  }
+  const auto of = [&](const TableBeside& table) {
+    return std::vector<std::string>(headings.begin() + static_cast<std::ptrdiff_t>(table.first),
+                                    headings.begin() + static_cast<std::ptrdiff_t>(table.end));
+  };
+  std::set<std::string> different;
+  for (const TableBeside& table : tables) {
+    different.insert(table.title);
+    if (table.end - table.first < kFewest || of(table) != of(tables.front()) || table.title.empty())
+      return {};
+  }
+  if (tables.size() < 2 || different.size() < tables.size()) return {};
+  return tables;
+}
+
+namespace {
+
+/// Keeps the columns of a table beside others, and removes the rows below its end.
+void keep_columns(Sheet& sheet, const TableBeside& table) {
+  for (std::size_t row = sheet.rows.size(); row-- > 0;) {
+    std::vector<std::string>& cells = sheet.rows[row];
+    cells = {cells.begin() + static_cast<std::ptrdiff_t>(table.first),
+             cells.begin() + static_cast<std::ptrdiff_t>(table.end)};
+    if (!sheet.written.empty())
+      sheet.written[row] = std::clamp(sheet.written[row], table.first, table.end) - table.first;
+    if (is_blank(cells)) remove_row(sheet, row);
+  }
+}
+
+}  // namespace
+
 void keep_table(Sheet& sheet, std::optional<std::size_t> number) {
   const std::vector<std::size_t> first = tables_of(sheet);
   if (!number && (first.size() == 1 || join_pages(sheet, first))) return;
+  if (const auto beside = tables_side_by_side(sheet); number && first.size() == 1 && !beside.empty()) {
+    if (*number < 1 || *number > beside.size())
+      throw text::InputError(
+          {sheet.file, 0}, std::to_string(*number),
+          fmt::format("the file has no table of this number: it has {} tables side by side", beside.size()));
+    return keep_columns(sheet, beside[*number - 1]);
+  }
   std::string lines;
   for (const std::size_t row : first) lines += (lines.empty() ? "" : ", ") + std::to_string(sheet.line[row]);
   const std::string found = std::to_string(first.size()) + " table" + (first.size() == 1 ? "" : "s") +

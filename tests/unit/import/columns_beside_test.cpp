@@ -105,6 +105,65 @@ TEST(ColumnsBeside, ThatAreNotReadAreNamed) {
               Not(HasSubstr("beside the readings")));
 }
 
+TEST(ColumnsBeside, AVerdictNamesTheRowsThatDiffer) {
+  EXPECT_THAT(read(table_of("X Soll [mm]", "Abweichung X [µm]", "Status", "NIO", "IO")),
+              HasSubstr("line 2 has \"NIO\": if a row there does not count, delete it in the file"));
+  EXPECT_THAT(read(table_of("X Soll [mm]", "Abweichung X [µm]", "ok", "", "x")),
+              HasSubstr("line 2 is empty there: if a row"));
+  EXPECT_THAT(read(table_of("X Soll [mm]", "Abweichung X [µm]", "Status", "IO", "IO")),
+              Not(HasSubstr("if a row there does not count")));
+}
+
+TEST(ColumnsBeside, AReversalErrorWithoutTheWayBackIsNotComputedFromTheOthers) {
+  const auto why = [](const std::string& text) {
+    const SheetReading reading = read_as_sheet(text, "s.csv", {});
+    return reading.columns.back().why;
+  };
+  EXPECT_THAT(
+      why("X Soll [mm];Abweichung vor [µm];Umkehrspanne [µm]\n0;3,3;-14\n70;6,4;-14\n140;7;-14\n"),
+      AllOf(HasSubstr("\"Abweichung vor [µm]\" has one direction: no other column shows the way back"),
+            HasSubstr("--set \"dirX=1\"")));
+  EXPECT_THAT(
+      why("X Soll [mm];Richtung;Abweichung X [µm];Umkehrspanne [µm]\n0;+;3,3;-14\n70;+;6,4;-14\n"
+          "70;-;20,4;-14\n0;-;17,3;-14\n"),
+      AllOf(HasSubstr("computed from the readings in the other columns"), Not(HasSubstr("the way back"))));
+}
+
+TEST(ColumnsBeside, ALetterOfTwoBytesStaysWhole) {
+  EXPECT_THAT(unread_words("Abweichung X µm · 10", {}), ElementsAre("10"));
+  EXPECT_THAT(unread_words("Abweichung µA·zehn", {}), ElementsAre("µA", "zehn"));
+  EXPECT_THAT(read("Position X;Abweichung X\nmm;µm (minus = zu weit)\n0;3,3\n70;6,4\n"),
+              HasSubstr("\n0,-0.0033"));
+}
+
+TEST(ColumnsBeside, RunsInRowsAreATransposedTable) {
+  const std::string title = "X-Achse, Abweichungen in µm, Positionen in mm\n";
+  EXPECT_THAT(read(title + "Lauf;0;50;100\n1 vor;-13,1;-8,6;-8,5\n1 rück;1,4;4,9;5,7\n2 vor;-13;-8;-8\n"),
+              HasSubstr("each row below is one run: the table is transposed"));
+  EXPECT_THAT(read(title + "1 vor;0;50;100\n1 rück;0;50;100\n2 vor;0;50;100\n"),
+              Not(HasSubstr("transposed")));
+}
+
+TEST(ColumnsBeside, TheDirectionsMayBeWordsForHeights) {
+  EXPECT_THAT(read("X Soll [mm];Richtung;Abweichung X [µm]\n0;aufwärts;3,3\n70;aufwärts;6,4\n70;abwärts;7\n"
+                   "0;abwärts;2\n"),
+              AllOf(HasSubstr("\n70,1,"), HasSubstr("\n70,-1,")));
+}
+
+TEST(ColumnsBeside, ASignOfOneDirectionHasNoOptionForAllReadings) {
+  EXPECT_THAT(read("Abweichungen in µm; Spalten rück: bereits mit umgekehrtem Vorzeichen\n"
+                   "Position X [mm];1 vor;1 rück\n0;0,1;-6,2\n50;4,4;-10,2\n100;4;-10\n"),
+              AllOf(HasSubstr("another sign for the readings of one direction (rück)"),
+                    HasSubstr("reverse these values in the file; then delete this text"),
+                    Not(HasSubstr("give --sign"))));
+}
+
+TEST(ColumnsBeside, ATextAboutTheSignBetweenTheRowsIsNotOnlyDeleted) {
+  EXPECT_THAT(read("Position X [mm];Lauf;Abweichung X [µm]\n0;1;3\n70;1;6\nab hier Soll minus "
+                   "Ist;;\n0;2;-3\n70;2;-6\n"),
+              HasSubstr("reverse their values in the file before you delete the text"));
+}
+
 TEST(ColumnsBeside, NamesOfRunsAndPointsOfAnotherFormAreQuoted) {
   const auto table = [](const std::string& heading, const std::vector<std::string>& names) {
     std::string text = "X Soll [mm];Richtung;" + heading + ";Abweichung X [µm]\n";

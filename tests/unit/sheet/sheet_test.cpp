@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tools/sheet/heading.h"
+#include "tools/sheet/several_tables.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/sheet/unit_factor.h"
 #include "tools/sheet/workbook.h"
@@ -210,6 +211,28 @@ TEST(Sheet, MoreColumnsThanASpreadsheetHasAreRefusedWithTheirLine) {
     EXPECT_EQ(std::string(error.what()).find("s.csv:2: 16385 columns separated by semicolon"), 0u)
         << error.what();
   }
+}
+
+TEST(Sheet, TablesSideBySideAreChosenByTheirNumber) {
+  const std::string text =
+      "X-Achse;;;;Y-Achse;;\nSoll;vor;r;;Soll;vor;r\n0;1;2;;0;5;6\n50;1;2;;33;5;6\n100;1;2;;66;5;6\n150;1;2;;"
+      ";;\n";
+  const Sheet sheet = read_sheet(text, "s.csv");
+  const std::vector<TableBeside> tables = tables_side_by_side(sheet);
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(tables[1].title, "Y-Achse");
+  EXPECT_EQ(tables[1].first, 4u);
+  Sheet second = sheet;
+  keep_table(second, 2);
+  ASSERT_EQ(second.rows.size(), 5u);  // the last row has no cell there
+  EXPECT_EQ(second.rows[3], (std::vector<std::string>{"33", "5", "6"}));
+  Sheet third = sheet;
+  EXPECT_THROW(keep_table(third, 3), InputError);
+  Sheet all = sheet;
+  keep_table(all, std::nullopt);
+  EXPECT_EQ(all.rows, sheet.rows);
+  std::string other = text;  // other headings: two columns of one table
+  EXPECT_TRUE(tables_side_by_side(read_sheet(other.replace(other.rfind("vor"), 3, "Ist"), "s.csv")).empty());
 }
 
 /// Processor time of reading a cell of so many blanks and a digit, the least of three, in clock ticks.

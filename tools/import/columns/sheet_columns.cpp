@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <optional>
 #include <set>
@@ -107,6 +108,37 @@ void refuse_another_unit(const sheet::Sheet& sheet, const sheet::SheetTable& tab
                   heading.unit, wish.column.name, wish.column.unit));
 }
 
+/// Why a column with a difference of both approach directions ("Umkehrspanne") is omitted from readings of
+/// one direction; empty: it is no such column, or the other columns have both directions.
+std::string why_reversal_is_left(const sheet::SheetTable& table, const std::vector<SheetColumn>& columns,
+                                 std::size_t column) {
+  const std::string small = text::in_small_letters(table.headings[column].name);
+  if (small.find("umkehr") == std::string::npos && small.find("reversal") == std::string::npos) return "";
+  const Readings readings(columns);
+  std::string axis, heading;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (columns[k].use == SheetColumn::Use::kColumn && is_sense(columns[k].name)) return "";
+    if (names_statistic(table.headings[k]) ||
+        (columns[k].use != SheetColumn::Use::kDeviation && !readings.contain(columns[k])))
+      continue;
+    ++count;
+    axis = columns[k].name;
+    heading = table.headings[k].text;
+  }
+  if (count != 1) return "";
+  for (const SheetColumn& one : columns)  // the heading of the readings names no axis
+    if (axis.empty() && one.use == SheetColumn::Use::kColumn && one.name.size() == 1) axis = one.name;
+  if (axis.size() == 1) axis[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(axis[0])));
+  return fmt::format(
+      "the difference of both approach directions, and \"{0}\" has one direction: no other column shows the "
+      "way "
+      "back. Write a second column of readings into the file (vor - Umkehrspanne = rück, ISO 230-2), or "
+      "state "
+      "the direction of \"{0}\" (--set \"{1}=1\"; -1: back)",
+      heading, format::axis_column(format::AxisQuantity::kSense, axis));
+}
+
 /// The mean or the spread of the readings in the columns beside it is no further reading.
 void leave_statistics(const sheet::SheetTable& table, std::vector<SheetColumn>& columns) {
   const Readings readings(columns);
@@ -116,8 +148,12 @@ void leave_statistics(const sheet::SheetTable& table, std::vector<SheetColumn>& 
                (columns[k].use == SheetColumn::Use::kDeviation || readings.contain(columns[k]) ||
                 Guess::bare(table.headings[k].name) == Guess::Bare::kActual);
   for (std::size_t k = 0; reading && k < columns.size(); ++k)
-    if (columns[k].why == "by its heading" && names_statistic(table.headings[k]))
-      leave_column(columns[k], "this column is computed from the readings in the other columns");
+    if (columns[k].why == "by its heading" && names_statistic(table.headings[k])) {
+      const std::string reversal = why_reversal_is_left(table, columns, k);
+      leave_column(columns[k], reversal.empty()
+                                   ? "this column is computed from the readings in the other columns"
+                                   : reversal);
+    }
 }
 
 /// True if the positions of an axis are lengths.

@@ -12,6 +12,7 @@
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/words/doubtful_words.h"
 #include "tools/import/words/sheet_words.h"
+#include "tools/import/words/sign_words.h"
 #include "tools/import/words/unread_words.h"
 #include "tools/text/words.h"
 
@@ -198,6 +199,12 @@ std::string advice_for_text(const std::string& text) {
   for (const Doubtful subject : doubtful_in(text))
     if (const std::string advice = advice_of(subject); !advice.empty())
       return fmt::format("the text {}", advice);
+  if (may_state(text, Doubtful::kSign) || sign_said(text, SignPlace::kTitle) != SignSaid::kNothing)
+    return "the text may state another sign of the deviations: if it is about the rows below it, reverse "
+           "their "
+           "values in the file before you delete the text; if it is about all rows, give --sign "
+           "nominal-actual "
+           "or --sign actual-nominal";
   return "";
 }
 

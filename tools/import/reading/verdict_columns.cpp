@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <set>
 
 #include "tools/import/words/sheet_words.h"
@@ -144,6 +145,29 @@ std::string why_left(const sheet::Sheet& sheet, const sheet::SheetTable& table, 
                  : "";
 }
 
+/// The rows whose verdict is not that of most rows: "; line 19: \"NIO\"". Empty: too many, or none.
+std::string rows_of_other_verdicts(const sheet::Sheet& sheet, const sheet::SheetTable& table, std::size_t k) {
+  constexpr std::size_t kShown = 5;  // rows
+  std::map<std::string, std::size_t> count;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) ++count[sheet.rows[row][k]];
+  if (count.size() < 2) return "";
+  const auto most = std::max_element(count.begin(), count.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  const std::size_t others = sheet.rows.size() - table.first_data - most->second;
+  if (most->second <= others) return "";
+  std::string list;
+  std::size_t shown = 0;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {
+    const std::string& cell = sheet.rows[row][k];
+    if (cell == most->first || sheet::is_blank(sheet.rows[row]) || ++shown > kShown) continue;
+    list += fmt::format("{}line {} {}", list.empty() ? "" : ", ", sheet.line[row],
+                        cell.empty() ? "is empty there" : "has \"" + cell + "\"");
+  }
+  if (list.empty()) return "";
+  return fmt::format("; {}{}: if a row there does not count, delete it in the file", list,
+                     shown > kShown ? fmt::format(" and {} more", shown - kShown) : "");
+}
+
 }  // namespace
 
 bool names_remark(const sheet::Heading& heading) {
@@ -165,8 +189,8 @@ void leave_verdicts(sheet::Sheet& sheet, sheet::SheetTable& table, const std::ve
     if (why.empty()) continue;
     sheet.notes.push_back(
         fmt::format("the column \"{}\" {}: it is omitted; to keep it as a label of its rows, "
-                    "give --column \"NAME={}\"",
-                    heading.text, why, heading.text));
+                    "give --column \"NAME={}\"{}",
+                    heading.text, why, heading.text, rows_of_other_verdicts(sheet, table, k)));
     // An empty column keeps the numbers of the columns behind it, by which an option may name them.
     for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) sheet.rows[row][k].clear();
     heading.name = "verdict";

@@ -21,6 +21,7 @@
 #include "tools/import/words/joint_names.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/dates.h"
+#include "tools/sheet/several_tables.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/sheet/unit_factor.h"
 #include "tools/text/numbers.h"
@@ -199,18 +200,60 @@ void refuse_readings_without_position(const ImportTable& table, const Guess& gue
   }
 }
 
+/// Refuses tables side by side, of which each needs a call.
+void refuse_side_by_side(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  const std::vector<sheet::TableBeside> tables = sheet::tables_side_by_side(sheet);
+  if (tables.empty()) return;
+  std::string list;
+  for (std::size_t i = 0; i < tables.size(); ++i)
+    list += fmt::format("{}--table {} (\"{}\", columns {} to {})", list.empty() ? "" : ", ", i + 1,
+                        tables[i].title, tables[i].first + 1, tables[i].end);
+  throw text::InputError(
+      {sheet.file, sheet.line[table.heading_row]}, "",
+      fmt::format("the sheet has {} tables side by side: import each with {}, then give all "
+                  "files to the command",
+                  tables.size(), list));
+}
+
+/// The one approach direction whose columns or runs a text about the sign names: "rück". Empty: none, or
+/// both. "Minus", "positiv" and "vor dem Ziel" are words of a text about all readings.
+std::string direction_of_sign_text(const std::string& text) {
+  static const std::set<std::string> kReadings = {"spalte", "spalten",   "column", "columns",
+                                                  "lauf",   "läufe",     "laeufe", "run",
+                                                  "runs",   "messreihe", "reihen"};
+  static const std::set<std::string> kAmbiguous = {"vor", "hin", "her", "zur"};
+  std::string named;
+  bool readings = false, both = false;
+  for (const std::string& word : plain_words(text)) {
+    readings |= kReadings.contains(word);
+    if (!says_way(word) || kAmbiguous.contains(word)) continue;
+    both |= !named.empty() && sense_said(named) != sense_said(word);
+    named = word;
+  }
+  return readings && !both ? named : "";
+}
+
 /// Refuses deviations whose sign a text states, but not clearly.
 void refuse_unclear_signs(const std::vector<SheetColumn>& columns) {
-  for (const SheetColumn& column : columns)
-    if (column.use == SheetColumn::Use::kDeviation && !column.sign_text.empty())
+  for (const SheetColumn& column : columns) {
+    if (column.use != SheetColumn::Use::kDeviation || column.sign_text.empty()) continue;
+    const std::string direction = column.sign_of_row ? "" : direction_of_sign_text(column.sign_text);
+    if (!direction.empty())
       throw text::InputError(
           column.sign_place, column.sign_text,
-          column.sign_of_row ? "this remark of a row may state that the sign of the deviations changes "
-                               "here: reverse the sign of these values in the file, and delete the remark; "
-                               "if it is about all rows, give --sign actual-nominal or --sign "
-                               "nominal-actual"
-                             : "this text does not state clearly whether the deviations are actual - nominal "
-                               "or nominal - actual: give --sign actual-nominal or --sign nominal-actual");
+          fmt::format("this text may state another sign for the readings of one direction ({}), and --sign "
+                      "would reverse those of both: if their sign is not that of the other readings, reverse "
+                      "these values in the file; then delete this text",
+                      direction));
+    throw text::InputError(
+        column.sign_place, column.sign_text,
+        column.sign_of_row ? "this remark of a row may state that the sign of the deviations changes "
+                             "here: reverse the sign of these values in the file, and delete the remark; "
+                             "if it is about all rows, give --sign actual-nominal or --sign "
+                             "nominal-actual"
+                           : "this text does not state clearly whether the deviations are actual - nominal "
+                             "or nominal - actual: give --sign actual-nominal or --sign nominal-actual");
+  }
 }
 
 /// Refuses columns whose values contradict their unit or their direction.
@@ -501,6 +544,7 @@ ImportTable table_of_sheet(const sheet::Sheet& sheet, const sheet::SheetTable& t
     });
   }
   if (!measured) {
+    refuse_side_by_side(sheet, table);
     std::vector<std::string> units;
     for (const SheetColumn& column : columns) units.push_back(column.unit);
     if (const std::string points = points_alone(sheet, table, columns); !points.empty())

@@ -7,12 +7,15 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "tools/format/units.h"
 #include "tools/import/columns/column_guess.h"
 #include "tools/import/tables/computed_rows.h"
+#include "tools/import/words/run_columns.h"
 #include "tools/import/words/sheet_words.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
@@ -54,9 +57,45 @@ std::size_t count_round(const std::vector<double>& values) {
   }));
 }
 
+/// True if the first row of the data has the positions and each other row one run: "Lauf;0;50;100" above
+/// "1 vor;0,1;4,4;7,1".
+bool has_runs_in_rows(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  constexpr std::size_t kFewest = 3;  // positions
+  std::vector<std::size_t> rows;
+  for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row)
+    if (!sheet::is_blank(sheet.rows[row])) rows.push_back(row);
+  if (table.has_headings || rows.size() < kFewest) return false;
+  std::vector<double> positions;
+  const std::vector<std::string>& first = sheet.rows[rows.front()];
+  for (std::size_t k = 1; k < first.size(); ++k)
+    if (const auto number = sheet::plain_number(first[k], sheet.decimal_comma))
+      positions.push_back(*text::parse_number(*number));
+  const bool has_number = first.front().find_first_of("0123456789") != std::string::npos;
+  if (has_number || sense_said(first.front()) != 0 || positions.size() < kFewest ||
+      positions.size() + 1 < first.size())
+    return false;
+  const bool rises =
+      std::adjacent_find(positions.begin(), positions.end(), std::greater_equal<>()) == positions.end();
+  const bool falls =
+      std::adjacent_find(positions.begin(), positions.end(), std::less_equal<>()) == positions.end();
+  return (rises || falls) && std::all_of(rows.begin() + 1, rows.end(), [&](std::size_t row) {
+           const std::string& label = sheet.rows[row].front();
+           const auto run = run_column(sheet::parse_heading(label));
+           return says_computed_row(label) || (run && (run->sense != 0 || !run->run.empty()));
+         });
+}
+
 }  // namespace
 
 void refuse_transposed(const sheet::Sheet& sheet, const sheet::SheetTable& table) {
+  if (has_runs_in_rows(sheet, table))
+    throw text::InputError(
+        {sheet.file, sheet.line[table.first_data]}, "",
+        "the positions are in this row, and each row below is one run: the table is transposed, and the "
+        "command reads a column for each run. Transpose it in the spreadsheet program (copy, paste special, "
+        "transpose), write \"Soll X [mm]\" (the axis and its unit) above the positions and the unit behind "
+        "the "
+        "names of the runs (\"1 vor [um]\"), save it, and import it again");
   std::size_t rows = 0, labelled = 0;
   std::string labels;
   for (std::size_t row = table.first_data; row < sheet.rows.size(); ++row) {

@@ -63,7 +63,10 @@ std::vector<RunToken> run_tokens_of(const std::string& name) {
 
 /// A direction against gravity, which is not always that of increasing positions.
 bool says_height(const std::string& word) {
-  return word == "up" || word == "down" || word == "auf" || word == "ab";
+  static const std::set<std::string> kHeights = {"up",        "down",    "auf",      "ab",
+                                                 "aufwärts",  "abwärts", "upward",   "downward",
+                                                 "aufwaerts", "upwards", "abwaerts", "downwards"};
+  return kHeights.contains(word);
 }
 
 /// A heading of a run may have a mark in place of a word: "Nr 1", "M1", "Test 1".

@@ -62,12 +62,13 @@ const WordSet kStatisticWords = {
     "moyenne", "écart-type", "mittelwerts", "umkehrspanne", "umkehrspannen", "umkehrfehler", "umkehrspiel",
     // Signs of a mean and of a standard deviation; Ø has no small letter here.
     "x\u0304", "x\u0305", "ø", "Ø", "⌀", "∅", "σ", "2σ", "3σ"};
-const WordSet kForthWords = {"1",      "+1",       "+",           "forward",    "fwd",       "forth",
-                             "up",     "pos",      "positive",    "positiv",    "vor",       "vorwärts",
-                             "hin",    "auf",      "plus",        "cw",         "aller",     "\u2191",
-                             "\u2192", "hinfahrt", "hinweg",      "andata",     "vorlauf",   "ida",
-                             "heen",   "tam",      "prz\u00f3d",  "fram",       "frem",      "\u6b63\u5411",
-                             "avanti", "steigend", "aufsteigend", "ansteigend", "ascending", "increasing"};
+const WordSet kForthWords = {
+    "1",        "+1",           "+",          "forward",   "fwd",       "forth",      "up",
+    "pos",      "positive",     "positiv",    "vor",       "vorwärts",  "hin",        "auf",
+    "plus",     "cw",           "aller",      "\u2191",    "\u2192",    "hinfahrt",   "hinweg",
+    "andata",   "vorlauf",      "ida",        "heen",      "tam",       "prz\u00f3d", "fram",
+    "frem",     "\u6b63\u5411", "aufwärts",   "aufwaerts", "upward",    "upwards",    "avanti",
+    "steigend", "aufsteigend",  "ansteigend", "ascending", "increasing"};
 const WordSet kBackWords = {"-1",
                             "-",
                             "backward",
@@ -91,6 +92,10 @@ const WordSet kBackWords = {"-1",
                             "rückweg",
                             "her",
                             "ab",
+                            "abwärts",
+                            "abwaerts",
+                            "downward",
+                            "downwards",
                             "retour",
                             "ritorno",
                             "r\u00fccklauf",

@@ -157,7 +157,8 @@ std::vector<std::string> unread_words(std::string_view heading, const HeadingPla
   for (const std::string_view dash : {"\u2212", "\u2010", "\u2011", "\u2013", "\u2014"})
     text::replace_all(text, dash, "-");
   for (const std::string_view index : {"_ij", "_i", "_j"})
-    text::replace_all(text, index, "");  // of ISO 230-2
+    text::replace_all(text, index, "");    // of ISO 230-2
+  text::replace_all(text, "\u00b7", " ");  // two bytes: as separators they would cut other letters
   std::vector<std::string> words;
   std::string alone;  // a sign alone before this word: "+ 10"
   const SignSaid sign = sign_said(heading, SignPlace::kHeading);
@@ -169,7 +170,7 @@ std::vector<std::string> unread_words(std::string_view heading, const HeadingPla
     if (at == std::string::npos) return false;
     return sign_said(without.erase(at, word.size()), SignPlace::kHeading) != sign;
   };
-  for (const std::string& token : text::words_in(text, " \t,;:/()[]{}_.|#=\"'!?<>*\u00b7")) {
+  for (const std::string& token : text::words_in(text, " \t,;:/()[]{}_.|#=\"'!?<>*")) {
     const bool sign_before = token.size() > 1 && (token[0] == '-' || token[0] == '+');
     bool first = true;
     const std::string before = std::exchange(alone, token == "+" || token == "-" ? token + " " : "");
