@@ -486,7 +486,7 @@ void read_from_workbook(Sheet& sheet, const std::string& bytes, const SheetForma
                     "mean that a row does not count? Then change the file accordingly",
                     text::joined(read.unread, ", "), more > 0 ? fmt::format(" and {} more", more) : ""));
   }
-  sheet.notes.insert(sheet.notes.end(), read.formats.begin(), read.formats.end());
+  sheet.formats = std::move(read.formats);
   std::vector<std::vector<char>> is_number;
   for (std::size_t i = 0; i < read.rows.size(); ++i) {
     if (read.line[i] <= format.skip || is_remark(read.rows[i].front(), format.comment)) {

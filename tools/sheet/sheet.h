@@ -47,6 +47,7 @@ struct Sheet {
   std::vector<std::size_t> written;            // number of cells of each row in the text; empty for a
                                                // workbook
   std::vector<Remark> remarks;                 // comments, and lines at the top that were skipped
+  std::vector<FormattedCells> formats;         // of a workbook, see there
   std::vector<TextElsewhere> elsewhere;        // texts on the other visible sheets of a workbook
   std::vector<std::string> tables_beside;      // names of the other visible sheets with rows of numbers
   std::set<std::string> exact;                 // cells with a decimal sign that the workbook stores as

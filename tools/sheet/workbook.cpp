@@ -12,7 +12,6 @@
 #include <pugixml.hpp>
 
 #include "tools/sheet/dates.h"
-#include "tools/sheet/heading.h"
 #include "tools/sheet/number_format.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
@@ -289,58 +288,7 @@ class Reader {
     return formats_[style];
   }
 
-  /// Cells of one column with one number format.
-  struct FormattedCells {
-    std::size_t count = 0;
-    std::size_t row = 0;  // of the first cell, index
-    std::string first;    // its reference
-  };
   using Formats = std::map<std::pair<std::size_t, std::string>, FormattedCells>;
-
-  /// Gives headings without a unit the unit that the number format of their column shows, and says what else
-  /// the formats show.
-  static void look_at_formats(WorkbookSheet& sheet, const Formats& formats) {
-    for (const auto& [key, cells] : formats) {
-      const auto& [column, code] = key;
-      const auto is_filled = [&, k = column](std::size_t row) {
-        return k < sheet.rows[row].size() && !sheet.rows[row][k].empty();
-      };
-      std::size_t numbers = 0;  // of the column from the first of these cells on
-      for (std::size_t row = cells.row; row < sheet.rows.size(); ++row)
-        numbers += is_filled(row) && sheet.is_number[row][column] != 0 ? 1 : 0;
-      std::string* heading = nullptr;
-      for (std::size_t row = cells.row; row-- > 0 && heading == nullptr;)
-        if (is_filled(row) && sheet.is_number[row][column] == 0) heading = &sheet.rows[row][column];
-      if (heading == nullptr && cells.count < 2) continue;  // a number beside its label
-      const NumberFormat format = number_format(code);
-      const auto unit = unit_meant(format.text);
-      const bool only_unit = unit && !format.percent && !format.thousands && !format.other_sign;
-      if (heading != nullptr) {
-        const Heading parsed = parse_heading(*heading);
-        const std::string of_heading = parsed.unit.empty() ? unit_meant(*heading).value_or("") : parsed.unit;
-        if (only_unit && of_heading == *unit) continue;
-        if (format.percent && heading->find('%') != std::string::npos) continue;
-        if (only_unit && of_heading.empty() && parsed.unknown_unit.empty() && numbers == cells.count) {
-          sheet.formats.push_back(fmt::format(
-              "the heading \"{}\" has no unit: [{}] is the unit of the number format {} of its cells",
-              *heading, *unit, code));
-          *heading += " [" + *unit + "]";
-          continue;
-        }
-      }
-      std::string shown;
-      const auto add = [&](const std::string& words) { shown += (shown.empty() ? "" : ", ") + words; };
-      if (!format.text.empty()) add("\"" + format.text + "\"");
-      if (format.percent) add("the number times 100");
-      if (format.thousands) add("the number divided by 1000");
-      if (format.other_sign) add("another sign");
-      sheet.formats.push_back(fmt::format(
-          "the number format {} of {} cell{} from {} on shows {}: the numbers are read as they are stored "
-          "({}). "
-          "If the cells mean what they show, change the numbers or the unit in the heading in the file",
-          code, cells.count, cells.count == 1 ? "" : "s", cells.first, shown, sheet.rows[cells.row][column]));
-    }
-  }
 
   bool is_struck(const pugi::xml_node& cell) const {
     const auto style = static_cast<std::size_t>(cell.attribute("s").as_uint());
@@ -412,9 +360,8 @@ class Reader {
         cells[column] = value;
         numbers[column] = is_number(cell) ? 1 : 0;
         if (const std::string format = telling_format(cell); !format.empty()) {
-          FormattedCells& cells_of_format = formats[{column, format}];
-          if (++cells_of_format.count == 1)
-            cells_of_format.row = sheet.rows.size(), cells_of_format.first = cell.attribute("r").value();
+          FormattedCells& same = formats[{column, format}];
+          if (++same.count == 1) same = {column, format, cell.attribute("r").value(), row_number, 1};
         }
         if (is_struck(cell))
           sheet.unread.push_back(
@@ -431,7 +378,7 @@ class Reader {
       sheet.is_number.push_back(std::move(numbers));
       sheet.line.push_back(row_number);
     }
-    look_at_formats(sheet, formats);
+    for (auto& [key, cells] : formats) sheet.formats.push_back(std::move(cells));
     for (const pugi::xml_node merge : child(document.document_element(), "mergeCells").children())
       fill_merged(sheet, merge.attribute("ref").value());
     return sheet;

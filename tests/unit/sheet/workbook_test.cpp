@@ -8,6 +8,7 @@
 #include <map>
 
 #include "tools/sheet/dates.h"
+#include "tools/sheet/formatted_columns.h"
 #include "tools/sheet/sheet.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
@@ -118,11 +119,12 @@ TEST(Workbook, NumberFormatsThatShowMoreThanTheNumber) {
     for (const std::string row : {"2", "3"})
       rows += "<row r=\"" + row + "\"><c r=\"A" + row + "\"><v>1</v></c><c r=\"B" + row +
               "\" s=\"1\"><v>-1.5</v></c></row>";
-    return read_workbook(workbook_of("", rows, styles), "b.xlsx", "");
+    Sheet sheet = read_sheet(workbook_of("", rows, styles), "b.xlsx");
+    take_number_formats(sheet);
+    return sheet;
   };
   const auto note = [&](const std::string& code, const std::string& heading) {
-    const WorkbookSheet sheet = read(code, heading);
-    return text::joined(sheet.formats, "; ");
+    return text::joined(read(code, heading).notes, "; ");
   };
   using testing::HasSubstr;
   EXPECT_THAT(note("0.0\" x 0,1 µm\"", "Abw. [µm]"),

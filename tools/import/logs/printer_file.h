@@ -43,8 +43,8 @@ struct PrinterFile {
   std::array<double, 2> offset_mm = {};  // probe offset that was used
   bool twist = false;                    // the heights are those of the nozzle by z_compensations
   bool offset_known = true;              // false: a log of nozzle positions without a probe offset
-  std::string zero;                      // what was subtracted from the heights, or that nobody knows their
-                                         // zero; empty: the file has heights of the nozzle
+  std::string zero;                      // what was subtracted from the heights, or that their zero is
+                                         // unknown; empty: the file has heights of the nozzle
   bool zero_known = true;                // false: the heights contain the z_offset of a probe
   std::size_t not_probed = 0;            // number of positions of a height map without a reading
   std::size_t left_out = 0;              // number of touches in a log that the printer discarded

@@ -48,6 +48,7 @@
 #include "tools/import/words/sign_words.h"
 #include "tools/import/words/table_texts.h"
 #include "tools/import/words/title_units.h"
+#include "tools/sheet/formatted_columns.h"
 #include "tools/sheet/several_tables.h"
 #include "tools/sheet/sheet_number.h"
 #include "tools/text/error.h"
@@ -398,6 +399,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   for (const NamedPoint& one : words.points.points) known.push_back(one.name);
   const std::string lines = lines_of_pairs(bytes, known);
   result.sheet = sheet::read_sheet(lines.empty() ? bytes : lines, file, result.wishes.format);
+  sheet::take_number_formats(result.sheet);
   const std::set<std::size_t> degrees = convert_degree_cells(result.sheet);
   leave_tolerances(result.sheet);
   const std::optional<PairSheet> pairs =
