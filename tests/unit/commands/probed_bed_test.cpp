@@ -247,6 +247,57 @@ TEST_F(ProbedBed, APrintedSquareBesideTheMeshMakesNoBowOfTheAxes) {
   EXPECT_THAT(text, HasSubstr("# Not measured: xz_skew and yz_skew"));
 }
 
+/// A machine file with all errors: the fit that the export offers measures what the fit of a machine file
+/// with these errors alone measures. Without the yaw of Y (table.Y.rZ) in the list there was no skew.
+TEST_F(ProbedBed, TheFitThatAnExportOffersMeasuresTheSquarenessAndBothScales) {
+  text::write_file(folder + "/bed.csv", survey(0));
+  // Corners at (40, 40) to (190, 190); true x = 1.0021 (X - 0.0016 Y), y = 0.9988 Y.
+  text::write_file(folder + "/square.csv",
+                   "point,X[mm],Y[mm],Z[mm],distance[mm],from\nA,40,40,0.2,,\nB,190,40,0.2,,\n"
+                   "C,190,190,0.2,,\nD,40,190,0.2,,\nA-B,190,40,0.2,150.34,A\nB-C,190,190,0.2,149.84,B\n"
+                   "C-D,40,190,0.2,150.32,C\nD-A,40,40,0.2,149.81,D\nA-C,190,190,0.2,212.09,A\n"
+                   "B-D,40,190,0.2,212.42,B\n");
+  for (const std::string errors : {"all", "square"})
+    ASSERT_EQ(run("vernier new gantry --axis X:0:235 --axis Y:0:235 --axis Z:0:250 --artefact bed:plane "
+                  "--errors " +
+                  errors + " -o " + errors + ".xml && vernier fit " + errors + ".xml square.csv -o " +
+                  errors + "-fit.xml && vernier export klipper " + errors + "-fit.xml -o " + errors +
+                  " --touches bed.csv --steps 40,40,8 --json " + errors + ".json"),
+              0)
+        << said;
+  const auto offered = nlohmann::json::parse(text::read_file(folder + "/all.json"))["fit_again"];
+  EXPECT_FALSE(nlohmann::json::parse(text::read_file(folder + "/square.json")).contains("fit_again"));
+  const auto listed = [&](const char* option) {
+    std::string words;
+    for (const auto& one : offered[option]) words += (words.empty() ? "" : ",") + one.get<std::string>();
+    return fmt::format(" --{} \"{}\"", option, words);
+  };
+  ASSERT_EQ(run("vernier fit all.xml square.csv -o again.xml" + listed("hold") + listed("free") +
+                " && vernier export klipper again.xml -o again --touches bed.csv --steps 40,40,8 --json "
+                "again.json"),
+            0)
+      << said;
+  EXPECT_FALSE(nlohmann::json::parse(text::read_file(folder + "/again.json")).contains("fit_again"));
+  const auto number = [&](const std::string& file, const std::string& name, std::size_t which) {
+    const std::string text = text::read_file(folder + "/" + file);
+    std::size_t at = 0;
+    for (std::size_t i = 0; i <= which; ++i) {
+      at = text.find("\n" + name, at + (i > 0 ? 1 : 0));
+      if (at == std::string::npos) return 0.0;
+    }
+    return std::stod(text.substr(text.find_first_of("=:", at) + 1));
+  };
+  // The readings have two decimals over 212 mm: 0.0001 rad.
+  constexpr double kReadings = 1e-4;
+  EXPECT_NEAR(number("again/vernier.cfg", "xy_skew", 0), -0.0016, kReadings);
+  EXPECT_NEAR(number("again/vernier.cfg", "xy_skew", 0), number("square/vernier.cfg", "xy_skew", 0), 1e-6);
+  for (const std::size_t axis : {0, 1}) {
+    const double steps = number("again/vernier_steppers.cfg", "rotation_distance", axis);
+    EXPECT_NEAR(steps, number("square/vernier_steppers.cfg", "rotation_distance", axis), 1e-4);
+    EXPECT_NEAR(steps / 40, axis == 0 ? 1.0022 : 0.9988, 2 * kReadings);
+  }
+}
+
 TEST_F(ProbedBed, HeightsAtOneTemperatureAreThoseOfOneSurvey) {
   std::istringstream rows(survey());
   std::string heated, line;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `vernier export klipper|rrf|marlin|grbl`.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "tools/commands/command.h"
@@ -14,11 +17,13 @@
 #include "tools/exchange/printer/correction.h"
 #include "tools/exchange/printer/firmware_files.h"
 #include "tools/fit/findings.h"
+#include "tools/fit/fit.h"
 #include "tools/kinematics/at.h"
 #include "tools/maths/factors.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/measurement.h"
+#include "tools/model/parameters.h"
 #include "tools/safety/safety_sheet.h"
 #include "tools/text/error.h"
 #include "tools/text/files.h"
@@ -119,19 +124,48 @@ void add_left_out_of_bed(std::vector<exchange::LeftOut>& left, const exchange::B
          bed.shape->undetermined_um});
 }
 
-/// Parameters of the last fit whose values the readings do not determine: for fit --hold.
-std::string remedy_of_unmeasured(const model::Machine& machine) {
-  const std::string held = safety::not_measured(machine);
-  if (held.empty()) return "";
-  std::string scales;
+/// A fit that measures the squareness of Y to X and the scales of X and Y with the distances of a printed
+/// square: `hold` and `free` of `fit`. Both are empty if the last fit determined all other parameters.
+struct FitOfSquare {
+  std::vector<std::string> hold, free;
+};
+
+/// The distances determine a few numbers. Each table without an entry that the readings determined can stand
+/// for these numbers (yaw of Y: the squareness), so it is held too.
+FitOfSquare fit_of_square(const model::Machine& machine) {
+  const std::string open = safety::not_measured(machine);
+  if (open.empty()) return {};
+  const model::FitRecord& record = *machine.fitted;
+  FitOfSquare fit;
+  std::set<std::string> determined;
+  for (std::size_t i = 0; i < std::min(record.parameters.size(), record.origins.size()); ++i)
+    if (record.origins[i] == fit::origin_name(fit::Origin::kData))
+      determined.insert(model::without_station(record.parameters[i]));
+  const std::vector<std::string> not_measured = text::parts_of(open, ',');
+  constexpr std::string_view kAboutZ = "EC0";  // an angle between axes about Z: what the square measures
+  for (const std::string& parameter : record.parameters) {
+    const std::string name = model::without_station(parameter);
+    const bool table = name != parameter;
+    const bool open_static =
+        std::find(not_measured.begin(), not_measured.end(), name) != not_measured.end() &&
+        !name.starts_with(kAboutZ);
+    if ((table ? !determined.contains(name) : open_static) &&
+        std::find(fit.hold.begin(), fit.hold.end(), name) == fit.hold.end())
+      fit.hold.push_back(name);
+  }
   for (const char* const axis : exchange::kLetters)
-    if (axis != exchange::kLetters.back())
-      scales += fmt::format("{}scalefactor.{}", scales.empty() ? "" : ",", axis);
+    if (axis != exchange::kLetters.back()) fit.free.push_back(fmt::format("scalefactor.{}", axis));
+  return fit;
+}
+
+/// How to measure squareness and scales that the last fit did not measure; empty: nothing to hold.
+std::string remedy_of_unmeasured(const FitOfSquare& fit) {
+  if (fit.hold.empty()) return "";
   return fmt::format(
       "To measure squareness and scales with the distances of a printed square, fit a machine file of "
-      "vernier "
-      "new --errors square, or fit this machine file with --hold \"{}\" --free {}",
-      held, scales);
+      "vernier new --errors square, or fit the machine file from before the last fit again with --hold "
+      "\"{}\" --free {}",
+      fmt::join(fit.hold, ","), fmt::join(fit.free, ","));
 }
 
 /// Skews and steps that the files do not contain, because the last fit did not measure them.
@@ -301,7 +335,7 @@ void set_zero(exchange::PrinterCorrection& correction, const PrinterArguments& a
 
 void refuse_empty(const exchange::PrinterCorrection& correction, const model::Machine& machine) {
   if (!correction.empty()) return;
-  const std::string remedy = remedy_of_unmeasured(machine);
+  const std::string remedy = remedy_of_unmeasured(fit_of_square(machine));
   throw text::LimitNotMet(fmt::format(
       "the last fit measured no squareness, no scale and no height that this firmware could correct; nothing "
       "is written. {}",
@@ -450,9 +484,11 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
           {"error along Z by the model that remains with the files outside the touched region of the bed",
            errors.beyond_bed_um});
   }
+  const FitOfSquare again =
+      correction.unmeasured.empty() || correction.measured("XY") ? FitOfSquare{} : fit_of_square(fitted);
+  if (!again.hold.empty()) extra["fit_again"] = {{"hold", again.hold}, {"free", again.free}};
   finish(machine, common, name, left, files, {}, true, extra);
-  const std::string remedy = correction.unmeasured.empty() ? "" : remedy_of_unmeasured(fitted);
-  if (!remedy.empty() && !correction.measured("XY")) fmt::print(human_stream(common.json), "{}\n", remedy);
+  if (!again.hold.empty()) fmt::print(human_stream(common.json), "{}\n", remedy_of_unmeasured(again));
 }
 
 void add_printer(CLI::App* parent, const char* name, const char* what, const char* steps, Firmware firmware) {
