@@ -53,22 +53,32 @@ Eigen::Vector3d tool_shift_place(const model::Machine& machine, const model::Bas
   return link ? Eigen::Vector3d(link->frame.inverse() * in_row) : in_row;
 }
 
-std::vector<std::string> tool_shift_places(const model::Machine& machine, const std::string& text) {
-  if (machine.tool_shifts.empty()) return {};
-  const std::optional<TipLink> link = tip_link(text);
-  if (!link)
-    return {
-        "ToolShift is in the frame of the tool: its origin is the tool point, its axes are those of the last "
-        "row of <transforms>"};
+TipLink tool_link(const model::Machine& machine, const std::string& name) {
+  TipLink link{name, Eigen::Isometry3d::Identity()};
+  link.frame.translate(tool_point(machine));
+  return link;
+}
+
+std::vector<std::string> tool_shift_places(const model::Machine& machine, const TipLink& link,
+                                           const std::string& urdf) {
   std::vector<std::string> sentences;
   for (const model::BaseShift& shift : machine.tool_shifts) {
     const Eigen::Vector3d at = tool_shift_place(machine, shift, link);
     sentences.push_back(
-        fmt::format("{} is at {:.4f}, {:.4f}, {:.4f} mm in the frame of the link {} of the URDF; its "
+        fmt::format("{} is at {:.4f}, {:.4f}, {:.4f} mm in the frame of the link {} of {}; its "
                     "parameters are in the frame of the last row of the machine file",
-                    label_of(shift), at.x(), at.y(), at.z(), link->name));
+                    label_of(shift), at.x(), at.y(), at.z(), link.name, urdf));
   }
   return sentences;
+}
+
+std::vector<std::string> tool_shift_places(const model::Machine& machine, const std::string& text) {
+  if (machine.tool_shifts.empty()) return {};
+  if (const std::optional<TipLink> link = tip_link(text))
+    return tool_shift_places(machine, *link, "the URDF");
+  return {
+      "ToolShift is in the frame of the tool: its origin is the tool point, its axes are those of the last "
+      "row of <transforms>"};
 }
 
 }  // namespace vernier::exchange

@@ -24,8 +24,17 @@ std::optional<TipLink> tip_link(const std::string& text);
 Eigen::Vector3d tool_shift_place(const model::Machine& machine, const model::BaseShift& shift,
                                  const std::optional<TipLink>& link);
 
-/// Returns a sentence for each ToolShift of a machine: its place in the frame of the end link, mm. A machine
-/// file without the name of a link: one sentence that names the frame of ToolShift. Empty without ToolShift.
+/// Returns the end link of a URDF that was written without an original: its frame is the last row of the
+/// machine file, with the origin at the tool point.
+TipLink tool_link(const model::Machine& machine, const std::string& name);
+
+/// Returns a sentence for each ToolShift of a machine: its place in the frame of a link, mm. `urdf`: the URDF
+/// that has the link.
+std::vector<std::string> tool_shift_places(const model::Machine& machine, const TipLink& link,
+                                           const std::string& urdf);
+
+/// Returns these sentences with the end link of the machine file. A machine file without the name of a link:
+/// one sentence that names the frame of ToolShift. Empty without ToolShift.
 std::vector<std::string> tool_shift_places(const model::Machine& machine, const std::string& text);
 
 }  // namespace vernier::exchange

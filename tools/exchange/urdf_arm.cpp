@@ -478,9 +478,9 @@ class Arm {
     Isometry3d tool = at_reference_;
     tool.translation() -= at;
     return text + fmt::format(
-                      "  <link name=\"tool\"/>\n  <joint name=\"tool_joint\" type=\"fixed\">\n{}    <parent "
-                      "link=\"{}\"/>\n    <child link=\"tool\"/>\n  </joint>\n</robot>\n",
-                      origin(tool), parent);
+                      "  <link name=\"{0}\"/>\n  <joint name=\"{0}_joint\" type=\"fixed\">\n{1}    <parent "
+                      "link=\"{2}\"/>\n    <child link=\"{0}\"/>\n  </joint>\n</robot>\n",
+                      kToolLink, origin(tool), parent);
   }
 
   const model::Machine& machine_;

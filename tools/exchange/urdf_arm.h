@@ -27,6 +27,9 @@ struct UrdfFile {
   std::optional<CalibratedOriginal> original;   // with an original URDF: its tip and its tool point
 };
 
+/// The end link of a URDF that was written without an original.
+inline constexpr const char* kToolLink = "tool";
+
 /// Returns the URDF model of an arm with one joint for each axis. The links are base_link, one link for each
 /// axis, and tool. With the joints at zero, or in the middle of a range that does not contain zero, each
 /// frame of the URDF model is parallel to the base. URDF has ideal joints. The origins and axes of the joints

@@ -355,6 +355,21 @@ TEST(TipLink, SaysWhereTheReflectorIsInTheFrameOfTheLink) {
   const Vector3d by_chain =
       base * (Vector3d(pose.position.col(0)) + pose.rotation[0] * Vector3d(37, 21, -117));
   EXPECT_LT((frame_of(urdf, "tool0", at) * said - by_chain).norm(), 2e-4);  // the sentence has 1e-4 mm
+  // AND without the original URDF the place is in the link of the URDF that is written, which is another
+  // frame.
+  const std::string written = exchange::urdf_arm(machine, make_states(1, machine), names).text;
+  const std::vector<std::string> in_written =
+      exchange::tool_shift_places(machine, exchange::tool_link(machine, exchange::kToolLink), "robot.urdf");
+  ASSERT_EQ(in_written.size(), 1U);
+  Vector3d there;
+  ASSERT_EQ(std::sscanf(in_written[0].c_str(),
+                        "ToolShift is at %lf, %lf, %lf mm in the frame of the link tool of robot.urdf",
+                        &there[0], &there[1], &there[2]),
+            3)
+      << in_written[0];
+  EXPECT_GT((there - said).norm(), 1);
+  const Vector3d in_rows = Vector3d(pose.position.col(0)) + pose.rotation[0] * Vector3d(37, 21, -117);
+  EXPECT_LT((frame_of(written, exchange::kToolLink, at) * there - in_rows).norm(), 2e-4);
   // AND a machine file that was made from no URDF names the frame of the parameters.
   std::string plain = text;
   plain.erase(plain.find(" link=\"tool0\""),

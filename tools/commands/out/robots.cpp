@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
@@ -56,9 +57,13 @@ void export_urdf(const ExchangeArguments& arguments) {
         tool[1], tool[2]);
     tip = {{"link", file.original->tip}, {"added", file.original->added_tip}, {"tool_mm", three_json(tool)}};
   }
-  const std::string text = text::read_file(arguments.machine);
-  if (exchange::tip_link(text))
-    for (const std::string& one : exchange::tool_shift_places(machine, text))
+  // The place of a reflector, in a link of the URDF that the user gets.
+  const std::optional<exchange::TipLink> link = original
+                                                    ? exchange::tip_link(text::read_file(arguments.machine))
+                                                    : exchange::tool_link(machine, exchange::kToolLink);
+  if (link)
+    for (const std::string& one :
+         exchange::tool_shift_places(machine, *link, original ? "the URDF" : "robot.urdf"))
       fmt::print(human_stream(arguments.json), "{}\n", one);
   Json undetermined = Json::array();
   for (const exchange::UndeterminedJoint& one : file.undetermined)
