@@ -256,6 +256,28 @@ TEST_F(ImportRemedies, OfJointsInRadiansNameTheUnit) {
   }
 }
 
+TEST_F(ImportRemedies, OfPointsInMetresAreOneCall) {
+  text::write_file(folder + "/arm.xml", std::string(kArm));
+  const auto [log, list] = log_and_list("Name;A1 [deg];A2 [deg];X;Y;Z", 1);
+  text::write_file(folder + "/log.csv", log);
+  text::write_file(folder + "/list.txt", list);
+  // A list in mm that is said to be in m
+  const std::string call = "vernier import tracker list.txt --nominal log.csv --machine arm.xml -o read.csv ";
+  const std::string rest = " --nominal-column J1=2 --nominal-column J2=3";
+  ASSERT_EQ(run(call + "--column 1=x[m] --column 2=y[m] --column 3=z[m]" + rest), 1) << said;
+  EXPECT_THAT(said, HasSubstr("With the points in [mm] in the place of [m] they agree within "));
+  EXPECT_THAT(said, HasSubstr("write x[mm], y[mm], z[mm], give: vernier import tracker list.txt"));
+  EXPECT_THAT(remedy(), HasSubstr("--nominal-column"));
+  ASSERT_EQ(run(remedy()), 0) << said;
+  EXPECT_THAT(text::read_file(folder + "/read.csv"),
+              testing::StartsWith("J1[deg],J2[deg],x[mm],y[mm],z[mm]"));
+  // A map file states the columns: no call can change it.
+  text::write_file(folder + "/points.map", "column 1 = x[m]\ncolumn 2 = y[m]\ncolumn 3 = z[m]\n");
+  ASSERT_EQ(run(call + "--map points.map" + rest), 1) << said;
+  EXPECT_THAT(said, HasSubstr("write x[mm], y[mm], z[mm]"));
+  EXPECT_THAT(said, testing::Not(HasSubstr(", give: ")));
+}
+
 TEST_F(ImportRemedies, OfALogNameThePositionThatTheControlComputed) {
   text::write_file(folder + "/own.xml", own_names());
   text::write_file(folder + "/log.csv", log_and_list("Name;A1;A2;X;Y;Z", 1).log);

@@ -123,6 +123,24 @@ void refuse_unread_coordinates(const SurveyArguments& arguments, const std::stri
           columns, missing, whole, call_with(kind, {}, options_of("--column", others))));
 }
 
+/// The call of the user with the points in another unit; empty if a map file states the columns.
+std::string call_in_unit(const SurveyArguments& arguments, const CLI::App& kind, const std::string& unit) {
+  std::vector<std::string> words = arguments.columns;
+  std::size_t changed = 0;
+  for (std::string& word : words) {
+    const std::size_t name = word.rfind('=') + 1, bracket = word.find('[', name);
+    const auto& point = format::columns::kPoint;
+    if (bracket == std::string::npos ||
+        std::find(std::begin(point), std::end(point), word.substr(name, bracket - name)) == std::end(point))
+      continue;
+    word.replace(bracket, std::string::npos, "[" + unit + "]");
+    ++changed;
+  }
+  return changed == std::size(format::columns::kPoint)
+             ? call_with(kind, {"--column"}, options_of("--column", words))
+             : "";
+}
+
 Json summary(const std::string& kind, const importer::ImportTable& table) {
   Json columns = Json::array();
   for (const auto& column : table.columns)
@@ -268,9 +286,10 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
     table = survey.logged->table;
   }
   if (!arguments.nominal.empty()) {
-    survey.joined =
-        importer::with_nominal(table, nominal_list(kind, arguments.nominal, arguments.nominal_columns),
-                               model::read_machine(arguments.machine), arguments.log_options.tolerance_mm);
+    importer::NominalList list = nominal_list(kind, arguments.nominal, arguments.nominal_columns);
+    list.call_in_unit = [&](const std::string& unit) { return call_in_unit(arguments, kind, unit); };
+    survey.joined = importer::with_nominal(table, list, model::read_machine(arguments.machine),
+                                           arguments.log_options.tolerance_mm);
     table = survey.joined->table;
   }
   if (!arguments.machine.empty())

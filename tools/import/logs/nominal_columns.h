@@ -20,6 +20,9 @@ struct NominalList {
   /// Returns the call of the user with these assignments, for a refusal. Empty: a refusal has the options
   /// alone.
   std::function<std::string(const std::vector<std::string>& columns)> call = {};
+  /// Returns the call of the user with the points in another unit, for a refusal. Empty, or an empty text: a
+  /// refusal names the unit alone.
+  std::function<std::string(const std::string& unit)> call_in_unit = {};
 };
 
 /// The rows of a list of nominal positions, and the columns of the axes as far as they are clear.

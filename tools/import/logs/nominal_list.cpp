@@ -257,9 +257,10 @@ std::string other_unit(const ImportTable& table, const ImportTable& points, cons
   return fmt::format("{}, give: {}", found, way_on(nominal, list, words));
 }
 
-/// The other unit of the points, if all of them agree in it: a sentence with the unit; empty: they do not.
-std::string other_unit_of_points(const ImportTable& table, const model::Machine& machine,
-                                 double tolerance_mm) {
+/// The other unit of the points, if all of them agree in it: a sentence with the unit, and the call that goes
+/// on; empty: they do not.
+std::string other_unit_of_points(const ImportTable& table, const NominalList& nominal,
+                                 const model::Machine& machine, double tolerance_mm) {
   const ImportTable::Column& first = *table.find(format::columns::kPoint[0]);
   for (const char* unit : {"mm", "m", "in", "cm"}) {
     if (unit == first.unit) continue;
@@ -271,9 +272,10 @@ std::string other_unit_of_points(const ImportTable& table, const model::Machine&
       words += fmt::format("{}{}[{}]", words.empty() ? "" : ", ", name, unit);
     }
     const Eigen::VectorXd off = distances(other, machine);
-    if (off.size() > 0 && off.maxCoeff() <= kTolerances * tolerance_mm)
-      return fmt::format("With the points in [{}] in the place of [{}] they agree within {:.3g} mm: write {}",
-                         unit, first.unit, off.maxCoeff(), words);
+    if (off.size() == 0 || off.maxCoeff() > kTolerances * tolerance_mm) continue;
+    const std::string call = nominal.call_in_unit ? nominal.call_in_unit(unit) : "";
+    return fmt::format("With the points in [{}] in the place of [{}] they agree within {:.3g} mm: write {}{}",
+                       unit, first.unit, off.maxCoeff(), words, call.empty() ? "" : ", give: " + call);
   }
   return "";
 }
@@ -288,7 +290,7 @@ void check_distances(NominalTable& result, const ImportTable& points, const List
   Eigen::Index worst = 0;
   if (off.maxCoeff(&worst) <= kTolerances * tolerance_mm) return;
   std::string unit = other_unit(table, points, list, nominal, machine, tolerance_mm);
-  if (unit.empty()) unit = other_unit_of_points(table, machine, tolerance_mm);
+  if (unit.empty()) unit = other_unit_of_points(table, nominal, machine, tolerance_mm);
   throw text::InputError(
       {table.file, table.line[static_cast<std::size_t>(worst)]}, "",
       fmt::format(
