@@ -183,6 +183,9 @@ TEST(WorkbenchCommand, ThePageGetsWhatTheProgramDeclaresOfAllowedOptionsOnly) {
   // The positions of a tracker's points may be in another file.
   EXPECT_EQ(option("import tracker", "nominal")["kind"], "reads");
   EXPECT_EQ(option("import tracker", "machine")["kind"], "reads");
+  // A note of the page asks for it.
+  for (const char* importer : {"import table", "import tracker", "import probe"})
+    EXPECT_EQ(option(importer, "directions")["words"], nlohmann::ordered_json({"from-order"})) << importer;
   EXPECT_TRUE(options("sh").is_null());
 }
 

@@ -157,10 +157,12 @@ async function programAndMap(page) {
 async function positioning(page) {
   await view(page, 'compare');
   await page.until("document.getElementById('compare-figures')", 'the comparison');
-  await page.type('[aria-label="tolerance of A"]', '50');
+  // A length with its unit, as people write it.
+  await page.type('[aria-label="tolerance of A"]', '50 µm');
   await page.click('#handover-positioning');
   await words(page, '#handover-answer', 'Not met');
   assert.ok((await command(page)).startsWith('vernier evaluate iso230-2 X.csv --axis X '), await command(page));
+  assert.ok((await command(page)).includes('--tolerance A=50um'), await command(page));
   assert.ok((await command(page)).includes('--language de'), await command(page));
   assert.ok(readFileSync(join(folder, 'iso230-2_X.html'), 'utf8').includes('"language":"de"'), 'the report is German');
 }
@@ -310,6 +312,41 @@ async function printer(page) {
   await page.click('#do-export');
   await words(page, '#export-result', 'klipper-with_bed-fitted/');
   await words(page, '#left-out', 'and the files do not contain it (size unknown)');
+  await squareOfAPrinter(page);
+}
+
+/** The distances of a printed square and a machine file with all errors: the export offers the fit that measures the skew. */
+async function squareOfAPrinter(page) {
+  await view(page, 'project');
+  await page.choose('#machine', 'with_bed.xml');
+  await page.drop([
+    {
+      name: 'square.csv',
+      text: 'point,X[mm],Y[mm],Z[mm],distance[mm],from,u[um]\nA,40,40,0.2,,,10\nB,190,40,0.2,,,10\nC,190,190,0.2,,,10\nD,40,190,0.2,,,10\nA-B,190,40,0.2,150.34,A,10\nB-C,190,190,0.2,149.84,B,10\nC-D,40,190,0.2,150.32,C,10\nD-A,40,40,0.2,149.81,D,10\nA-C,190,190,0.2,212.09,A,10\nB-D,40,190,0.2,212.42,B,10\n',
+    },
+  ]);
+  await measured(page, 'square.csv');
+  await page.until("document.body.dataset.subject === 'yes'", 'the rows');
+  await view(page, 'add');
+  await page.click('#fit');
+  await chosen(page, 'with_bed-fitted-2.xml');
+  await view(page, 'export');
+  await page.choose('#export-format', 'klipper');
+  await page.type('#view-export [data-option=touches]', 'printer_read.csv');
+  await page.type('#view-export [data-option=steps]', '40,40,8');
+  await page.click('#do-export');
+  await words(page, '#export-result', 'of with_bed.xml the other errors stay as they are');
+  assert.ok(!/vernier (new|fit|import)|--[a-z]/.test(await text(page, '#export-result')), await text(page, '#export-result'));
+  await page.click('#fit-again');
+  await chosen(page, 'with_bed-fitted-3.xml');
+  await words(page, '#export-result', 'press "Write the files" again');
+  await page.click('#do-export');
+  await words(page, '#export-result', 'squareness XY: the files correct');
+  const folder_of = 'klipper-with_bed-fitted-3';
+  const [, skew] = readFileSync(join(folder, folder_of, 'vernier.cfg'), 'utf8').match(/xy_skew = (\S+)/);
+  // The readings have two decimals over 212 mm: 0.0001 rad.
+  assert.ok(Math.abs(Number(skew) + 0.0016) < 1e-4, skew);
+  assert.equal(readFileSync(join(folder, folder_of, 'vernier_steppers.cfg'), 'utf8').match(/^rotation_distance/gm).length, 2);
 }
 
 /** A square that a printer printed: its sides and diagonals by the names of its corners, without their positions. */
@@ -500,13 +537,26 @@ async function robot(page) {
   // What is measured is asked before there is a machine file: a reflector has no place in the description of a robot.
   await words(page, '#drop-error .question', 'A reflector is on the flange at a place that nobody measured');
   await picture(page, 'robot_measured', '#drop-error');
+  // The question stays until it is answered, whatever is dropped in the meantime.
+  await page.drop([{ name: 'foto.png', text: 'x' }]);
+  await words(page, '[data-advice="foto.png"]', 'cannot use a file of this kind');
+  await page.drop([{ name: 'torn.urdf', text: '<robot' }]);
+  await words(page, '#drop-error .error', 'torn.urdf');
+  await page.click('[data-file="arm.urdf"] .use');
+  await page.until(
+    "document.querySelectorAll('#drop-error .question').length === 1 && !document.querySelector('#drop-error .error')",
+    'one question',
+  );
+  await words(page, '#drop-error .question', 'arm.urdf: what does the instrument measure at the tool?');
   await page.click('#drop-error [data-answer=point]');
   await chosen(page, 'arm.xml');
   assert.ok(!readFileSync(join(folder, 'arm.xml'), 'utf8').includes('<ToolShift'));
   assert.equal(await page.evaluate('document.querySelector(\'[data-file="arm.urdf"]\').dataset.kind'), 'robot');
   await view(page, 'export');
   await page.choose('#export-format', 'urdf');
+  assert.equal(await page.evaluate('document.querySelector(\'#export-options [data-option="original"]\').value'), 'arm.urdf');
   await page.click('#do-export');
+  await words(page, '#export-result', 'the joints of arm.urdf are those of the machine file');
   await words(page, '#export-result', 'difference from the machine file at 1000 poses');
   assert.deepEqual(await files(page, 'export-result'), [['urdf-arm/robot.urdf', 'robot.urdf']]);
   assert.ok(readFileSync(join(folder, 'urdf-arm/robot.urdf'), 'utf8').includes('q6'));
@@ -645,6 +695,7 @@ async function pointsAndPositions(page) {
   await page.click(`${own} #import-reflector`);
   await measured(page, 'points_read.csv');
   await page.until("document.body.dataset.subject === 'yes'", 'the rows');
+  await readDifferently(page, own);
   // A page begins at its top.
   await page.evaluate('scrollTo(0, 500)');
   await view(page, 'compare');
@@ -653,6 +704,39 @@ async function pointsAndPositions(page) {
   await page.click('#fit');
   // The fit says where the reflector is, in the frame of the last link of the description.
   await words(page, '#fit-notes', 'mm in the frame of the link l6 of the URDF');
+}
+
+/** The points again with the directions of the motion: every other answer is that of the first time. */
+async function readDifferently(page, own) {
+  const field = (name) => page.evaluate(`document.querySelector('${own} [data-option="${name}"]')?.value ?? null`);
+  const names = `[...document.querySelectorAll('${own} [aria-label^="name of column"]')].map((one) => one.value)`;
+  await page.click('[data-file="points_read.csv"] .differently');
+  await page.until(`document.querySelector('${own} [data-option="directions"]')`, 'the field "directions"');
+  assert.equal(await page.evaluate(`document.querySelector('${own} select:has(option[value=tracker])').value`), 'tracker');
+  for (const [name, value] of [
+    ['nominal', 'positions.csv'],
+    ['set', 'u[um]=20'],
+    ['separator', 'semicolon'],
+    ['decimal', 'point'],
+    ['directions', ''],
+  ])
+    assert.equal(await field(name), value, name);
+  assert.deepEqual(await page.evaluate(names), ['point', 'x', 'y', 'z']);
+  await page.choose(`${own} [data-option=directions]`, 'from-order');
+  await page.click(`${own} #do-import`);
+  // The new file is chosen in the place of the old one.
+  await measured(page, 'points_read-2.csv');
+  const [, old] = readFileSync(join(folder, 'points_read.csv'), 'utf8').split('\n');
+  const [head, row] = readFileSync(join(folder, 'points_read-2.csv'), 'utf8').split('\n');
+  assert.ok(/,dirq1,.*,dirq6/.test(head), head);
+  assert.deepEqual(row.split(',').slice(0, 10), old.split(',').slice(0, 10));
+  // A third time from the same panel: again one file in the place of the other, with the directions of the second time.
+  await page.click(`${own} #read-differently`);
+  await page.until(`document.querySelector('${own} #do-import')`, 'the panel');
+  assert.equal(await field('directions'), 'from-order');
+  await page.click(`${own} #do-import`);
+  await measured(page, 'points_read-3.csv');
+  await page.until("document.body.dataset.subject === 'yes'", 'the rows');
 }
 
 /** Of a mill a tracker's X, Y and Z have the names of its axes: the page says what the file may be, and one choice makes it points. */
@@ -706,6 +790,19 @@ async function logWithoutUnits(page) {
     `${own} .import-note:last-of-type`,
     'log.txt: the columns of the joints (A1 ...) have no unit: they are read in degrees',
   );
+  // The same points in metres, without a unit: mm is proposed, the program finds m, and one press goes on.
+  const metres = rows.map((row) => [row[0], ...row.slice(7, 10).map((one) => (Number(one.replace(',', '.')) / 1000).toFixed(7))].join(';'));
+  await page.drop([{ name: 'metres.txt', text: `Name;X;Y;Z\n${metres.join('\n')}\n` }]);
+  const other = '[data-of="metres.txt"]';
+  await words(page, `${other} #proposed-unit`, 'mm is proposed');
+  await page.type(`${other} [data-option=nominal]`, 'positions.csv');
+  await page.click(`${other} #do-import`);
+  await words(page, `${other} .error`, 'With the points in [m] in the place of [mm] they agree within');
+  await words(page, `${other} .error`, 'press "The points are in m"');
+  assert.ok(!/vernier import|--[a-z]/.test(await text(page, `${other} .error`)), await text(page, `${other} .error`));
+  await page.click(`${other} #unit-is-right`);
+  await measured(page, 'metres_read.csv');
+  await page.choose('#measurement', 'tracker_read.csv');
   await page.until("document.body.dataset.subject === 'yes'", 'the rows');
   // What a check of the files says reaches who has no command line.
   await words(page, '#lint', 'no check rows in the file');

@@ -34,10 +34,11 @@ constexpr Allowed kAllowed[] = {
     {"import ballbar", false, true, "files repair-time-base output"},
     {"import ballbar-trace", false, true, "files radius plane length feed output"},
     {"import tracker", false, true,
-     "file map separator decimal skip header column set check-every machine nominal nominal-column tolerance "
-     "output"},
+     "file map separator decimal skip header column set directions check-every machine nominal "
+     "nominal-column "
+     "tolerance output"},
     {"import probe", false, true,
-     "file map separator decimal skip header column set check-every radius output"},
+     "file map separator decimal skip header column set directions check-every radius output"},
     {"import laser", false, true, "file output"},
     {"import printer", false, true, "file profile on offset twist series u output"},
     {"fit", false, true, "machine meas images loss free hold output!"},

@@ -5,8 +5,10 @@ import { number } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, run } from './api.js';
 import { reportHead } from './handover.js';
 import { optionFields } from './options.js';
-import { button, gate, guarded, panel } from './parts.js';
+import { button, gate, guarded, panel, programWords } from './parts.js';
+import { choose } from './rows.js';
 import { emit, on, store } from './store.js';
+import { fitThatMade, urdfOf } from './uses.js';
 
 const kNoMachine = 'Choose a machine at the top first';
 const stemOf = (name) => name.replace(/.*\//, '').replace(/\.[^.]*$/, '');
@@ -23,11 +25,48 @@ const fileLink = (name) =>
 
 const um = (one) => (Number.isFinite(one.um) ? ` (up to ${number(one.um, 3)} µm)` : ' (size unknown)');
 
+/**
+ * The fit that measures the squareness and the scales of X and Y with the distances of a printed square, where the last fit had
+ * too many errors for them: of the machine file and the measurements of that fit. null: none, or the history does not have that fit.
+ */
+function fitAgain(offered) {
+  const before = offered && fitThatMade(store.machine);
+  if (!before) return null;
+  const error = el('div', {});
+  const fit = button(
+    'Fit the squareness and these scales alone',
+    () =>
+      guarded(error, async () => {
+        const output = freeName(`${stemOf(before.machine)}-fitted`, '.xml');
+        await run({ command: 'fit', ...before, ...offered, output });
+        await choose(output, store.measurements);
+        error.replaceChildren(el('p', { class: 'note', role: 'status' }, `${output} is fitted and chosen: press "Write the files" again.`));
+      }),
+    { id: 'fit-again' },
+  );
+  return el(
+    'div',
+    { class: 'controls' },
+    `If the distances of a printed square were measured, they determine the squareness and the scales of X and Y: of ${before.machine} the other errors stay as they are.`,
+    fit,
+    error,
+  );
+}
+
 /** What a command printed, and its files. What the format left out is said with the success, not below it. */
 function outcome(box, { text, result }, files, words) {
   const left = result?.left_out ?? [];
-  // The command names its files too; here they are links.
-  const lines = text.split('\n').filter((line) => line.trim() && !files.includes(line.trim()) && !line.startsWith('left out: '));
+  const again = fitAgain(result?.fit_again);
+  // The command names its files too; here they are links. What it offers is a button.
+  const lines = programWords(text)
+    .split('\n')
+    .filter(
+      (line) =>
+        line.trim() &&
+        !files.includes(line.trim()) &&
+        !line.startsWith('left out: ') &&
+        !(again && line.startsWith('To measure squareness and scales ')),
+    );
   box.replaceChildren(
     left.length
       ? el(
@@ -41,6 +80,7 @@ function outcome(box, { text, result }, files, words) {
           ),
         )
       : '',
+    again ?? '',
     el('p', { class: 'verdict', role: 'status' }, words),
     lines.length ? el('pre', { class: 'source wrap' }, lines.join('\n')) : '',
     el(
@@ -71,7 +111,8 @@ function controlPanel() {
     el('option', { value: '' }, 'choose the control or the format'),
     formats.map((one) => el('option', { value: one.name.slice('export '.length) }, one.help)),
   );
-  let fields = null;
+  let fields = null,
+    filled_for = null;
   const write = button(
     'Write the files',
     () =>
@@ -95,9 +136,16 @@ function controlPanel() {
       }),
     { id: 'do-export' },
   );
+  /** The URDF of the machine that is chosen: its frames are those that the user knows. */
+  const fillOriginal = () => {
+    filled_for = store.machine;
+    if (format.value === 'urdf') fields.fill({ original: [''], tip: [''], ...urdfOf(store.machine) });
+  };
+  on('rows', () => filled_for !== store.machine && fillOriginal());
   const now = gated(write, () => (format.value ? null : 'Choose the control or the format first'));
   format.addEventListener('change', () => {
     fields = format.value ? optionFields(`export ${format.value}`, ['machine', 'output']) : null;
+    fillOriginal();
     options.replaceChildren(...(fields?.elements ?? []));
     error.replaceChildren();
     result.replaceChildren();

@@ -122,9 +122,14 @@ export function handoverPanel() {
   };
   const tolerance = micrometres('tolerance of A'),
     uncertainty = micrometres('its uncertainty, k = 2');
+  /** A number of micrometres, or with a unit of its own: "50", "50um", "0,05 mm". */
   const length = (input, key) => {
-    const words = input.value.trim().replace(',', '.');
-    return words ? { [key]: [`A=${words}um`] } : {};
+    const words = input.value
+      .trim()
+      .replace(',', '.')
+      .replace(/\s+/g, '')
+      .replace(/[µμ]m$/, 'um');
+    return words ? { [key]: [`A=${words}${/[a-z]$/i.test(words) ? '' : 'um'}`] } : {};
   };
   on('rows', () => {
     // Axes along which something was measured that has their name in small letters.

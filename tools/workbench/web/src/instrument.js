@@ -2,7 +2,7 @@
 import { el } from '../../../report/web/src/dom.js';
 import { freeName, run } from './api.js';
 import { option, optionFields } from './options.js';
-import { button, guarded, panel } from './parts.js';
+import { button, guarded, pageWords, panel } from './parts.js';
 
 export const kDeclareBed =
   'The machine file must declare the bed that was touched. For a new machine file: "Make one by type and travels", options of new, write bed:plane into the field "artefact". For the chosen machine file: "These rows cannot be read", "Declare it".';
@@ -10,12 +10,13 @@ export const kDeclareBed =
 /**
  * Imports a file by a kind of `vernier import` that needs no table of columns: at once where it needs no further options, else its
  * options are asked for. `done(measurement)` is called with the name of the measurement file. `asks`: the options are asked for
- * although none is missing.
+ * although none is missing. `earlier`: an import whose options the fields begin with.
  */
-export async function importInstrument(box, kind, name, done, asks = false) {
+export async function importInstrument(box, kind, name, done, asks = false, earlier = null) {
   const command = `import ${kind}`,
     error = el('div', {}),
     fields = optionFields(command, ['file', 'files', 'output']);
+  if (earlier?.kind === kind) fields.fill(earlier.given);
   const file = option(command, 'file') ? { file: name } : { files: [name] };
   const act = () =>
     guarded(error, async () => {
@@ -25,7 +26,7 @@ export async function importInstrument(box, kind, name, done, asks = false) {
         panel(
           null,
           el('p', { id: 'imported' }, `${name}: read into `, el('strong', {}, output), '.'),
-          el('pre', { class: 'source wrap' }, text.trim()),
+          el('pre', { class: 'source wrap' }, pageWords(text.trim(), `vernier ${command} `)),
           kind === 'printer' ? el('p', { class: 'note' }, kDeclareBed) : null,
           button('Read it differently', ask, { class: 'quiet', id: 'read-differently' }),
         ),

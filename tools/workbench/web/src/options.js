@@ -11,12 +11,12 @@ export const fieldName = (name) => name.replaceAll('-', ' ');
 /** The form of a value that is several numbers, as the help of its option states it: " (40,40,8)". */
 const formOf = (one) => one.help.match(/form( [-\d.,]+)[;)]/)?.[1].replace(/ (.*)/, ' ($1)') ?? '';
 
-/** An input for an option. Its `value()` is that of a request; undefined: not given. */
+/** An input for an option. Its `value()` is that of a request; undefined: not given. `fill(words)` enters the words of a command. */
 function input(one) {
   const common = { 'data-option': one.name, 'aria-label': one.name, title: one.help };
   if (one.kind === 'flag') {
     const node = el('input', { ...common, type: 'checkbox' });
-    return { node, value: () => node.checked || undefined };
+    return { node, value: () => node.checked || undefined, fill: () => (node.checked = true) };
   }
   if (one.words && one.list) {
     const boxes = one.words.map((word) =>
@@ -33,6 +33,7 @@ function input(one) {
         const marked = boxes.filter((box) => box.checked).map((box) => box.value);
         return marked.length ? marked : undefined;
       },
+      fill: (given) => boxes.forEach((box) => (box.checked = given.includes(box.value))),
     };
   }
   const number = one.kind === 'number' || one.kind === 'count';
@@ -43,7 +44,11 @@ function input(one) {
       el('option', { value: '' }, one.default ?? ''),
       ...one.words.map((word) => el('option', { value: word }, word)),
     );
-    return { node, value: () => (node.value ? (number ? Number(node.value) : node.value) : undefined) };
+    return {
+      node,
+      value: () => (node.value ? (number ? Number(node.value) : node.value) : undefined),
+      fill: ([word]) => (node.value = word),
+    };
   }
   const single = number && !one.list;
   const limits = single ? { min: one.low ?? (one.kind === 'count' ? 0 : null), max: one.high, step: one.kind === 'count' ? 1 : 'any' } : {};
@@ -59,6 +64,7 @@ function input(one) {
   const read = (word) => (number ? Number(word.replace(',', '.')) : word);
   return {
     node,
+    fill: (given) => (node.value = given.join('; ')),
     value: () => {
       const words = node.value.trim();
       if (!words) return undefined;
@@ -69,7 +75,8 @@ function input(one) {
 
 /**
  * Fields for the options of a command but those that the page gives in another way: their names, help, allowed words, types
- * and ranges are those of the program. `change` is called with each change. {elements, values(): the part of a request}.
+ * and ranges are those of the program. `change` is called with each change. {elements, values(): the part of a request, fill({option:
+ * [words]}): enters what a command of the history was given}.
  */
 export function optionFields(command, given, change = () => {}) {
   const all = store.commands.find((one) => one.name === command).options;
@@ -77,11 +84,12 @@ export function optionFields(command, given, change = () => {}) {
     .filter((one) => !given.includes(one.name))
     .map((one) => {
       const { name } = one,
-        { node, value } = input(one);
+        { node, value, fill } = input(one);
       node.addEventListener('change', change);
       return {
         name,
         value,
+        fill,
         required: one.required,
         label: el(
           one.list && one.words ? 'div' : 'label',
@@ -95,6 +103,7 @@ export function optionFields(command, given, change = () => {}) {
     elements: fields.map((one) => one.label),
     /** Names of fields that have to be filled in and are empty. */
     required: () => fields.filter((one) => one.required && one.value() === undefined).map((one) => fieldName(one.name)),
+    fill: (words) => fields.forEach((one) => words[one.name] && one.fill(words[one.name])),
     values: () => Object.fromEntries(fields.map((one) => [one.name, one.value()]).filter(([, value]) => value !== undefined)),
   };
 }

@@ -50,6 +50,18 @@ export const programWords = (words) =>
       / \(import table --directions from-order\)/g,
       ' under Project: press "read differently" beside the file, and choose "from-order" in the field "directions"',
     )
+    .replace(
+      / \(import printer --series N reads the touches of one survey\)/g,
+      ' (under Project, "read differently" beside the file and the number of one survey in the field "series" reads the touches of this survey)',
+    )
+    .replace(
+      / \(vernier import printer LOG --series N, or PRINTER\.CFG --profile NAME\) in the place of --at/g,
+      ' (under Project, "read differently" beside the file of the touches: the number of the survey in the field "series", or the name of the mesh in the field "profile"), and leave the field "at" empty',
+    )
+    .replace(
+      /fit a machine file of vernier new --errors square, or fit the machine file from before the last fit again with --hold "([^"]+)" --free (\S+)/g,
+      'make a new machine file with "square" in the field "errors" and fit it, or fit the machine file from before the last fit again with $1 in the field "hold" and $2 in the field "free" of the options of fit',
+    )
     .replace(/make the machine file with --stations (\S+) \(vernier new\)/g, 'make a new machine file with $1 in the field "stations"')
     .replace(
       / \(import table:? --set "([^"]+)"\)/g,
@@ -61,6 +73,13 @@ export const programWords = (words) =>
     )
     .replace(/fit --hold "([^"]+)"/g, 'fit again under Parameters with $1 in the field "hold" of the options of fit');
 
+/** The machine has no field in any panel: it is chosen at the top of the page. */
+const atTheTop = (message) =>
+  message
+    .replace(/ \(--machine MACHINE\)/g, ': choose it at the top')
+    .replace(/requires --machine\b/g, 'requires a machine (choose it at the top)')
+    .replace(/--machine\b/g, 'the choice of a machine at the top');
+
 /** A message of a command in the words of the page: an option that has a field is called by the field. `typed`: the command. */
 export function pageWords(said, typed) {
   const message = programWords(said);
@@ -70,7 +89,7 @@ export function pageWords(said, typed) {
   // A whole command is for the terminal.
   if (!command || /\bvernier [a-z]/.test(message)) return message;
   const has = (name) => command.options.some((one) => one.name === name);
-  const accepted = message.replace(/;((?: --accept [\w-]+)+) overrides\s*$/, (whole, list) =>
+  const accepted = atTheTop(message).replace(/;((?: --accept [\w-]+)+) overrides\s*$/, (whole, list) =>
     has('accept')
       ? `. If you accept this, mark ${list
           .trim()

@@ -11,9 +11,21 @@ import { choose } from './rows.js';
 import { importSheet } from './sheet.js';
 import { stoodPanel } from './stood.js';
 import { on, store } from './store.js';
-import { adviceOn, forget, kindAction, kindOf, kindOfName, kindWords, readInto, sourceOf } from './uses.js';
+import { adviceOn, forget, importThatMade, kindAction, kindOf, kindOfName, kindWords, readInto, sourceOf } from './uses.js';
 
 const size = (bytes) => (bytes < 10000 ? `${bytes} B` : bytes < 1e7 ? `${Math.round(bytes / 1000)} kB` : `${Math.round(bytes / 1e6)} MB`);
+
+/** Chooses measurements in the place of others; the next call, in the place of those that this one has chosen. */
+function inPlaceOf(replaced) {
+  let old = replaced;
+  return (outputs) => {
+    const at = store.measurements.findIndex((one) => old.includes(one)),
+      chosen = store.measurements.filter((one) => !old.includes(one) && !outputs.includes(one));
+    chosen.splice(at < 0 ? chosen.length : at, 0, ...outputs);
+    old = outputs;
+    return choose(store.machine, chosen);
+  };
+}
 
 /**
  * Makes a measurement of a file of the project, as its kind asks for. `beside`: measurements to use with it; `again`: a table is
@@ -31,22 +43,35 @@ async function importFile(name, kind, box, repair, { beside, again }) {
     return done(output);
   }
   // Later sheets, and a sheet that is read differently, come beside what was chosen in the meantime.
-  let made = null;
+  let later = null;
   return importSheet(
     box,
     name,
     (outputs) => {
-      const others = made ? store.measurements.filter((one) => !made.includes(one) && !outputs.includes(one)) : beside;
-      made = outputs;
-      return choose(store.machine, [...others, ...outputs]);
+      if (later) return later(outputs);
+      later = inPlaceOf(outputs);
+      return choose(store.machine, [...beside, ...outputs]);
     },
     again,
+    again ? importThatMade(readInto(name)[0]) : null,
   );
 }
 
-/** Asks in a box, with a button for each answer [label, value]; the first answer is the usual one. */
+/** The questions without an answer: {words, node, end()}. */
+const asked_now = new Set();
+const questionAbout = (name) => [...asked_now].find((one) => one.words.startsWith(`${name}: `));
+
+/**
+ * Asks in a box, with a button for each answer [label, value]; the first answer is the usual one, the last one changes nothing. The
+ * question stays until it is answered.
+ */
 function question(box, words, answers) {
   return new Promise((answered) => {
+    const end = (value) => {
+      asked_now.delete(one);
+      node.remove();
+      answered(value);
+    };
     const node = el(
       'div',
       { class: 'question', role: 'alertdialog', 'aria-label': words },
@@ -54,26 +79,25 @@ function question(box, words, answers) {
       el(
         'div',
         { class: 'controls' },
-        answers.map(([label, value], i) =>
-          button(
-            label,
-            () => {
-              node.remove();
-              answered(value);
-            },
-            { class: i ? 'quiet' : null, 'data-answer': value },
-          ),
-        ),
+        answers.map(([label, value], i) => button(label, () => end(value), { class: i ? 'quiet' : null, 'data-answer': value })),
       ),
     );
+    const one = { words, node, end: () => end(answers.at(-1)[1]) };
+    asked_now.add(one);
     box.append(node);
-    node.querySelector('button').focus();
-    node.scrollIntoView({ block: 'nearest' });
+    show(node);
   });
+}
+
+function show(node) {
+  node.querySelector('button').focus();
+  node.scrollIntoView({ block: 'nearest' });
 }
 
 /** A machine file for the description of a robot; which of several end links is the tool, and what is measured, is asked in a box. */
 async function machineOfRobot(name, ask) {
+  const open = questionAbout(name);
+  if (open) return show(open.node);
   const stem = name.replace(/\.[^.]*$/, ''),
     { ends } = await getJson('/api/robot', { name }),
     // The usual name of the tool's link (ROS-Industrial) first.
@@ -159,6 +183,7 @@ async function take(file, { repair, boxOf, beside, ask, notes }) {
   const { name } = kept;
   await putFile(name, await file.arrayBuffer(), kept.replace);
   forget(name);
+  questionAbout(name)?.end(); // of the file that was replaced
   await refresh();
   const kind = await kindOfName(name),
     advice = adviceOn(kind);
@@ -265,7 +290,8 @@ function history() {
 }
 
 export function projectView(root) {
-  const error = el('div', { id: 'drop-error' }),
+  const error = el('div', {}),
+    questions = el('div', {}),
     notes = el('div', { id: 'drop-notes' }),
     box = el('div', { id: 'import-box' });
   const repair = optionFields('import ballbar', ['files', 'output']);
@@ -304,7 +330,7 @@ export function projectView(root) {
     for (const file of files) {
       try {
         const beside = store.measurements.filter((name) => !before.has(name));
-        await take(file, { repair: repair.values(), boxOf, beside, ask: error, notes });
+        await take(file, { repair: repair.values(), boxOf, beside, ask: questions, notes });
       } catch (why) {
         await showBadLine(error, file, why.message);
         return;
@@ -327,29 +353,36 @@ export function projectView(root) {
   });
   const files = el('tbody', { id: 'files' });
   const asked = el('div', { id: 'file-error' });
-  const byTable = async (name, done) => {
+  const byTable = async (name, done, earlier = null) => {
     const own = boxOf(name);
-    await importSheet(own, name, done, true);
+    await importSheet(own, name, done, true, earlier);
     own.scrollIntoView({ block: 'nearest' });
   };
   const act = {
-    // What was dropped is read again, not the table that was made of it.
+    // What was dropped is read again with the answers of the first time, not the table that was made of it.
     differently: async (name) => {
       const source = sourceOf(name),
-        instead = (outputs) =>
-          choose(store.machine, [...new Set(store.measurements.flatMap((one) => (one === name ? outputs : [one])).concat(outputs))]);
+        earlier = source === name ? null : importThatMade(name),
+        instead = inPlaceOf([name]);
       const kind = source === name ? 'sheet' : await kindOfName(source);
-      if (kind === 'sheet' || kind === 'measurement') return byTable(source, instead);
+      if (kind === 'sheet' || kind === 'measurement') return byTable(source, instead, earlier);
       const { importer } = store.files.find((one) => one.name === source);
       const own = boxOf(source);
-      await importInstrument(own, kind === 'trace' ? 'ballbar-trace' : (importer ?? kind), source, (output) => instead([output]), true);
+      await importInstrument(
+        own,
+        kind === 'trace' ? 'ballbar-trace' : (importer ?? kind),
+        source,
+        (output) => instead([output]),
+        true,
+        earlier,
+      );
       return own.scrollIntoView({ block: 'nearest' });
     },
     use: async (name, kind) => {
       error.replaceChildren();
       const own = boxOf(name),
         again = readInto(name).length > 0;
-      await use(name, kind, { box: own, repair: repair.values(), ask: error, again }).catch((why) => showError(error, why));
+      await use(name, kind, { box: own, repair: repair.values(), ask: questions, again }).catch((why) => showError(error, why));
       // The panel that asks about a file is above the table.
       if (own.childElementCount) own.scrollIntoView({ block: 'nearest' });
     },
@@ -365,7 +398,7 @@ export function projectView(root) {
   on('rows', draw);
   draw();
   root.append(
-    panel('Take in', zone, error, notes),
+    panel('Take in', zone, el('div', { id: 'drop-error' }, questions, error), notes),
     box,
     stoodPanel(chooseAnew, byTable),
     beginPanel(chooseAnew),

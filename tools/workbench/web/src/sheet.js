@@ -70,6 +70,8 @@ const kWhereItStood =
 /** What the table of columns and the preview say; all other options of the import have fields. */
 const kInTable = ['file', 'output', 'column', 'deviation', 'leave', 'sheet', 'machine', 'point'];
 const kOfPreview = [...kInTable, 'header'];
+/** The unit in which the program found that the points agree with their positions; undefined: in none. */
+const unitOfPoints = (message) => message.match(/With the points in \[(\w+)\] in the place of \[\w+\] they agree/)?.[1];
 /** A refusal that ends with a call for the terminal: the words before the call. */
 const beforeTheCall = (message) =>
   message
@@ -77,6 +79,7 @@ const beforeTheCall = (message) =>
       /: if the columns are x, y and z of the points, give: .*$/s,
       ': state them in the table. If nothing else was measured, give each other column a name of your own.',
     )
+    .replace(/: write x\[(\w+)\], y\[\w+\], z\[\w+\](?:, give: vernier import .*)?$/s, ': press "The points are in $1".')
     .replace(/, give: vernier import .*$/s, ', press "This assignment is right".')
     .replace(
       / with a heading of the list in the place of HEADING (\(.*\)), and the unit of the values: vernier import .*$/s,
@@ -178,9 +181,10 @@ function columnRow(column, k, preview, change) {
 /**
  * Takes a spreadsheet, a tracker's or a probe's table: what is understood without help is imported at once, what is not is
  * asked for here. `handOver(measurements)` is called with the names of the measurement files: one for each sheet that was imported.
- * `asks`: the meaning of the columns is asked for although nothing is missing.
+ * `asks`: the meaning of the columns is asked for although nothing is missing. `earlier`: an import of this file (importThatMade)
+ * whose answers the fields and the table of columns begin with.
  */
-export async function importSheet(box, name, handOver, asks = false) {
+export async function importSheet(box, name, handOver, asks = false, earlier = null) {
   const said = new Map(),
     points = new Map(), // typed positions of points, by name
     read_into = new Map(), // the measurement file of each sheet that was imported
@@ -189,7 +193,9 @@ export async function importSheet(box, name, handOver, asks = false) {
     proposed = false, // a unit that no heading states
     axes = [], // of the chosen machine
     sheet = '', // of a workbook; empty: the program's choice
-    turn = 0;
+    turn = 0,
+    machine_of_earlier = '',
+    remembered = earlier;
   const error = el('div', {});
   const forms = Object.fromEntries(
     kReadAs.map(([one]) => [
@@ -257,9 +263,26 @@ export async function importSheet(box, name, handOver, asks = false) {
     );
     error.scrollIntoView({ block: 'nearest' });
   };
+  /** Points that agree with their positions in another unit: the button states it, and goes on. */
+  const offerUnit = (preview) => {
+    const unit = unitOfPoints(error.textContent);
+    if (!unit) return;
+    const go = button(
+      `The points are in ${unit}`,
+      () => {
+        const in_unit = preview.columns.map((one) => (one.use === 'column' && /^[xyz]$/.test(one.name) ? { ...one, unit } : one));
+        for (const k of said.keys()) said.set(k, { ...said.get(k), unit: in_unit[k].unit });
+        return doImport({ ...preview, columns: in_unit });
+      },
+      { id: 'unit-is-right' },
+    );
+    error.append(go);
+    error.scrollIntoView({ block: 'nearest' });
+  };
   const doImport = async (preview) => {
     const assigned = await importNow(preview);
     offerReflector(preview);
+    offerUnit(preview);
     offerColumns(preview, assigned ?? []);
   };
   const importNow = (preview) =>
@@ -270,7 +293,8 @@ export async function importSheet(box, name, handOver, asks = false) {
       // The preview has read the text with the answers of the fields, and knows the rest.
       const values = { ...forms[kind].values(), ...(kind === 'table' ? {} : ofPreview(preview)) };
       // The list of nominal positions, and the position of a point, have the axes of the machine.
-      const machine = (values.nominal || options.point) && store.machine ? { machine: store.machine } : {};
+      const of = store.machine || machine_of_earlier,
+        machine = (values.nominal || options.point) && of ? { machine: of } : {};
       let text = '';
       try {
         ({ text } = await run({ command: `import ${kind}`, file: name, ...options, ...values, ...machine, output }));
@@ -482,15 +506,54 @@ export async function importSheet(box, name, handOver, asks = false) {
       proposed ||= one.unit !== preview.columns[k].unit;
     }
   }
+  /** The answers of an earlier import, but for those of the columns. */
+  function recall({ kind: read_as, given }) {
+    kind = read_as;
+    forms[kind].fill(given);
+    sheet = given.sheet?.[0] ?? '';
+    machine_of_earlier = given.machine?.find((one) => store.files.some((file) => file.name === one)) ?? '';
+    for (const [, point, values] of (given.point ?? []).map((one) => one.match(/^(.*)=(.*)$/) ?? []))
+      if (values) points.set(point, values.split(','));
+  }
+  /** What the columns were in an earlier import: "X[mm]=HEADING" of a spreadsheet, "HEADING=x[mm]" of points and touches. */
+  function recallColumns({ given }, preview) {
+    const at = (source) => {
+      const named = preview.columns.findIndex((one) => one.heading === source);
+      return named < 0 ? Number(source) - 1 : named;
+    };
+    const tell = (source, use, meaning = '') => {
+      const [, column, unit = ''] = meaning.match(/^(.*?)(?:\[(.*)\])?$/);
+      if (preview.columns[at(source)]) said.set(at(source), { use, name: column, unit });
+    };
+    for (const one of given.leave ?? []) tell(one, 'left');
+    for (const use of ['column', 'deviation'])
+      for (const one of given[use] ?? []) {
+        const between = kind === 'table' ? one.indexOf('=') : one.lastIndexOf('='),
+          [before, after] = [one.slice(0, between), one.slice(between + 1)];
+        if (kind === 'table') tell(after, use, before);
+        else tell(before, use, after);
+      }
+    if (kind !== 'table' && said.size)
+      preview.columns.forEach((one, k) => one.use === 'column' && !said.has(k) && said.set(k, { use: 'left', name: '', unit: '' }));
+  }
   /** Imports the table or sheet at once if nothing is missing, else asks. */
   async function begin() {
     if (store.machine) axes = await axesOf(store.machine);
     error.replaceChildren();
     box.replaceChildren(error);
+    const recalled = remembered;
+    remembered = null; // it does not hold for another sheet of the workbook
+    if (recalled) recall(recalled);
     const first = await guarded(error, ask);
-    if (!first) return refused();
-    kind = likely(first, axes);
-    if (kind === 'tracker') propose(first);
+    if (!first) {
+      kind = null;
+      return refused();
+    }
+    if (recalled) recallColumns(recalled, first);
+    else {
+      kind = likely(first, axes);
+      if (kind === 'tracker') propose(first);
+    }
     if (said.size) return draw();
     return first.message === null && kind === 'table' && !asks ? doImport(first) : draw(first);
   }

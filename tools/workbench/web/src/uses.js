@@ -27,7 +27,8 @@ export const kindWords = (kind) => kKinds[kind][0];
 export const kindAction = (kind) => kKinds[kind][1];
 
 /** The words of a command of the history, without the quotes of a shell. */
-const wordsOf = (command) => [...command.matchAll(/'([^']*)'|[^\s']+/g)].map((match) => match[1] ?? match[0]);
+const wordsOf = (command) =>
+  [...command.matchAll(/(?:'[^']*'|\\.|[^\s'\\])+/g)].map(([word]) => word.replace(/'([^']*)'|\\(.)/g, (_, quoted, one) => quoted ?? one));
 const stored = (name) => store.files.some((one) => one.name === name);
 /** The imports of the history that read or wrote a file, latest first: {read, written}, of files that are still there. */
 const importsOf = (name) =>
@@ -42,6 +43,46 @@ const importsOf = (name) =>
 
 /** The file of which an import made this measurement file; the file itself if nothing says so. */
 export const sourceOf = (name) => importsOf(name).find((one) => one.written.includes(name) && one.read.length)?.read[0] ?? name;
+/**
+ * What the last command of the history that wrote a file was given: {name, given: {option: [words]}, words: those without an option,
+ * the files}; null: the history has none. `names`: the first words of such commands.
+ */
+function commandThatMade(file, names) {
+  const entry = [...store.history]
+    .reverse()
+    .find((one) => !one.undone && names.test(one.name) && one.outputs?.some((output) => output === file || file.startsWith(`${output}/`)));
+  const declared = store.commands.find((one) => one.name === entry?.name)?.options;
+  if (!declared) return null;
+  const made = { name: entry.name, given: {}, words: [] },
+    rest = wordsOf(entry.command).slice(1 + entry.name.split(' ').length);
+  while (rest.length) {
+    const word = rest.shift(),
+      one = declared.find(({ typed }) => typed && typed === word);
+    if (!one) made.words.push(word);
+    else (made.given[one.name] ??= []).push(one.kind === 'flag' ? word : rest.shift());
+  }
+  return made;
+}
+/** What the last import that wrote a measurement file was given: {kind, given}. */
+export function importThatMade(name) {
+  const made = commandThatMade(name, /^import\b/);
+  return made && { kind: made.name.slice('import '.length), given: made.given };
+}
+/** Of which files the last fit made a machine file: {machine, meas}, all of them still there; null: the history does not say. */
+export function fitThatMade(name) {
+  const [machine, ...meas] = commandThatMade(name, /^fit$/)?.words ?? [];
+  return meas.length && [machine, ...meas].every(stored) ? { machine, meas } : null;
+}
+/** The description of the robot of which the history made a machine file: {original, tip}, words of the options; null: none. */
+export function urdfOf(machine) {
+  for (let file = machine, steps = 0; file && steps < store.history.length; ++steps) {
+    const made = commandThatMade(file, /^(new|fit|set|add|improve)$/);
+    const { urdf, tip } = made?.given ?? {};
+    if (urdf) return urdf.every(stored) ? { original: urdf, ...(tip ? { tip } : {}) } : null;
+    file = made?.words.find((word) => /\.xml$/i.test(word));
+  }
+  return null;
+}
 /** The measurement files that imports made of a file. */
 export const readInto = (name) => [
   ...new Set(
