@@ -281,6 +281,21 @@ async function printer(page) {
     await page.evaluate("document.querySelector('#history li:last-child code').textContent"),
     'vernier import printer printer.cfg --offset -30 --offset -10 --u 5 -o printer_read-2.csv',
   );
+  // A log with several surveys says where the number of one is stated.
+  const survey = (z, heat) =>
+    `Stats ${1000 + heat}.0: heater_bed: target=${heat} temp=${heat}.0\n${[
+      [10, 10],
+      [100, 10],
+      [100, 100],
+      [10, 100],
+    ]
+      .map(([x, y], i) => `probe at ${x}.000,${y}.000 is z=${(z + 0.01 * i).toFixed(6)}\n`)
+      .join('')}`;
+  await page.drop([
+    { name: 'klippy.log', text: `[probe]\nx_offset = -38\ny_offset = -8\nz_offset = 0\n${survey(0, 60)}${survey(0.05, 90)}` },
+  ]);
+  await words(page, '[data-of="klippy.log"]', 'the field "series"');
+  assert.ok(!(await text(page, '[data-of="klippy.log"]')).includes('--'), await text(page, '[data-of="klippy.log"]'));
   // A configuration without a mesh says what is missing, and does not end in silence.
   await page.drop([{ name: 'bare.cfg', text: '[printer]\nkinematics: cartesian\n' }]);
   await words(page, '#import-box .error', 'no configuration with a saved mesh');
@@ -511,6 +526,9 @@ async function again(page) {
   await page.drop([{ name: 'gauge.csv', text: 'Pos;Anzeige\n0,0;1,5\n100,0;2,5\n200,0;4,0\n' }]);
   await words(page, '#sheet-message', '"Pos" is X[mm]');
   assert.ok(!(await text(page, '#sheet-message')).includes('--'), await text(page, '#sheet-message'));
+  await touchesAgain(page);
+  await page.drop([{ name: 'gauge2.csv', text: 'Pos;Anzeige\n0,0;1,5\n100,0;2,5\n200,0;4,0\n' }]);
+  await words(page, '#sheet-message', '"Pos" is X[mm]');
   // What cannot be pressed says why.
   assert.ok((await title(page, '#do-import')).startsWith('State what is missing first'));
   await view(page, 'compare');
@@ -520,6 +538,24 @@ async function again(page) {
   assert.equal(await title(page, '#upload'), 'There is no image yet: press Compile first');
   await view(page, 'fleet');
   assert.ok((await title(page, '#fleet-look')).startsWith('State the registry first'));
+}
+
+/** Touches of a probe again, with the directions of the motion and the radius of the first time. */
+async function touchesAgain(page) {
+  const rows = [0, 100, 200].map((x) => `${x},0,0,${x},0,0.1,${x},0,0,0,0,1`).join('\n');
+  await page.drop([{ name: 'touches.txt', text: `X[mm],Y[mm],Z[mm],mx[mm],my[mm],mz[mm],px[mm],py[mm],pz[mm],nx,ny,nz\n${rows}\n` }]);
+  const own = '[data-of="touches.txt"]';
+  await page.until(`document.querySelector('${own} [data-option=radius]')`, 'the panel of a probe');
+  await page.type(`${own} [data-option=radius]`, '3');
+  await page.click(`${own} #do-import`);
+  await measured(page, 'touches_read.csv');
+  await page.click('[data-file="touches_read.csv"] .differently');
+  await page.until(`document.querySelector('${own} [data-option=directions]')`, 'the panel of a probe again');
+  assert.equal(await page.evaluate(`document.querySelector('${own} [data-option=radius]').value`), '3');
+  await page.choose(`${own} [data-option=directions]`, 'from-order');
+  await page.click(`${own} #do-import`);
+  await measured(page, 'touches_read-2.csv');
+  assert.ok(readFileSync(join(folder, 'touches_read-2.csv'), 'utf8').includes('dirX'));
 }
 
 /** The description of a robot becomes a machine file, and a description with its joints comes out. */

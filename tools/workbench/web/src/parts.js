@@ -76,7 +76,7 @@ export const programWords = (words) =>
 /** The machine has no field in any panel: it is chosen at the top of the page. */
 const atTheTop = (message) =>
   message
-    .replace(/ \(--machine MACHINE\)/g, ': choose it at the top')
+    .replace(/ \(--machine MACHINE\)/g, ' (choose it at the top)')
     .replace(/requires --machine\b/g, 'requires a machine (choose it at the top)')
     .replace(/--machine\b/g, 'the choice of a machine at the top');
 
@@ -99,10 +99,14 @@ export function pageWords(said, typed) {
           .join(', ')} in the field "accept".`
       : whole,
   );
+  // What is chosen among several is stated in the panel of the import.
+  const asksFor = (whole, name) =>
+    has(name) ? `press "Read it differently" and write its number into the field "${fieldName(name)}"` : whole;
   const field = (name) => `the field "${fieldName(name)}"`;
   // The option is the word in doubt, or has a value: --offset=X,Y is a list, whose field has "; " between two values.
   return (
     accepted
+      .replace(/\bgive --([a-z][\w-]*) with its number/g, asksFor)
       .replace(/"--([a-z][\w-]*)": /g, (whole, name) => (has(name) ? `${field(name)}: ` : whole))
       .replace(/--([a-z][\w-]*)=([^\s,;()]+(?:,[^\s,;()]+)*)/g, (whole, name, value) =>
         has(name) ? `"${value.replaceAll(',', '; ')}" in ${field(name)}` : whole,
