@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is precompiled under sanitizers: no header of the house, so that none is missing in a source unseen.
+// What is precompiled: no header of the house, so that none is missing in a source unseen.
 #pragma once
 #include <fmt/format.h>
+#if __has_include(<gtest/gtest.h>)
 #include <gtest/gtest.h>
+#endif
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -29,7 +29,12 @@ function(vernier_effort target room)
     # Seen without inlining, a number that is there on one condition "may be uninitialized" on the same one further down.
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   endif()
-  if(TARGET ${headers})
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "EXECUTABLE" AND TARGET ${headers}_pie)
+    string(APPEND headers _pie)
+  endif()
+  # A module of Python hides its names, which the headers do not.
+  if(TARGET ${headers} AND NOT type STREQUAL "MODULE_LIBRARY")
     target_precompile_headers(${target} REUSE_FROM ${headers})
   endif()
 endfunction()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The preset `debug` takes clang: its objects under sanitizers cost half of what they cost with GCC, and a second compiler reads the code.
+# The preset `debug` takes clang: its objects under sanitizers cost half of what they cost with GCC.
 if(VERNIER_SANITIZE)
   # A null or dangling pointer ends in the address sanitizer's hands anyway; asking before every access of Eigen's costs a third of the
   # compile time.
@@ -8,18 +8,6 @@ if(VERNIER_SANITIZE)
     -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
   add_compile_definitions(VERNIER_SANITIZED)
-  # Headers of libraries that most rooms and tests include, read once for each effort. With GCC, which writes out again what they
-  # instantiate, it costs more than it saves.
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND VERNIER_BUILD_TOOLS)
-    find_package(Eigen3 REQUIRED NO_MODULE)
-    add_compile_definitions(FMT_SHARED)
-    foreach(effort IN ITEMS "" _unoptimised)
-      add_library(vernier_headers${effort} OBJECT ${CMAKE_CURRENT_LIST_DIR}/headers.cpp)
-      target_link_libraries(vernier_headers${effort} PRIVATE Eigen3::Eigen)
-      target_precompile_headers(vernier_headers${effort} PRIVATE ${CMAKE_CURRENT_LIST_DIR}/headers.h)
-    endforeach()
-    target_compile_options(vernier_headers_unoptimised PRIVATE -O0)
-  endif()
 endif()
 if(VERNIER_BUILD_FUZZERS)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")

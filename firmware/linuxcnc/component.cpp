@@ -15,7 +15,7 @@ constexpr TimeUs kKeeperWait(5'000);  // between two rounds of the guardian
 constexpr TimeUs kStoreWait(10'000);  // between two checks for a request to the store
 constexpr std::int64_t kSettleTicks = 5;
 constexpr std::uint32_t kMostImage = 1u << 26;
-constexpr int kError = 1, kNote = 3;
+constexpr int kError = 1;
 
 WeightQ16 weight_of(double share) noexcept {
   return WeightQ16(
