@@ -291,7 +291,7 @@ TEST_F(ProbedBed, TheFitThatAnExportOffersMeasuresTheSquarenessAndBothScales) {
   constexpr double kReadings = 1e-4;
   EXPECT_NEAR(number("again/vernier.cfg", "xy_skew", 0), -0.0016, kReadings);
   EXPECT_NEAR(number("again/vernier.cfg", "xy_skew", 0), number("square/vernier.cfg", "xy_skew", 0), 1e-6);
-  for (const std::size_t axis : {0, 1}) {
+  for (const std::size_t axis : {0U, 1U}) {
     const double steps = number("again/vernier_steppers.cfg", "rotation_distance", axis);
     EXPECT_NEAR(steps, number("square/vernier_steppers.cfg", "rotation_distance", axis), 1e-4);
     EXPECT_NEAR(steps / 40, axis == 0 ? 1.0022 : 0.9988, 2 * kReadings);

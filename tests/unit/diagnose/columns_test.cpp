@@ -111,7 +111,7 @@ TEST_P(Columns, HaveTheSameScalarProductsByRows) {
       item.grid.push_back({unknown.start, 1.3 * unknown.start});
     list.push_back(std::move(item));
   }
-  Families families(evidence, list);
+  Families families(list);
   families.extend();
   EXPECT_LT(families.size(), list.size());
   // Directions beside the free parameters of the model, as those of a search are.

@@ -27,8 +27,7 @@ struct RowFunctions {
 /// locations. A search computes the functions of a family once, not again for each location.
 class Families {
  public:
-  Families(const Evidence& evidence, const std::vector<ScannedCandidate>& candidates)
-      : evidence_(evidence), candidates_(candidates) {}
+  explicit Families(const std::vector<ScannedCandidate>& candidates) : candidates_(candidates) {}
 
   /// Assigns the candidates to families that were added to the list since the last call.
   void extend();
@@ -45,7 +44,6 @@ class Families {
     std::vector<std::size_t> members;
     std::shared_ptr<const RowFunctions> stored;  // null: not stored
   };
-  const Evidence& evidence_;
   const std::vector<ScannedCandidate>& candidates_;
   std::size_t assigned_ = 0;  // number of candidates that belong to a family
   std::map<std::string, std::map<std::vector<std::vector<double>>, std::size_t>> known_;  // by terms and grid

@@ -34,7 +34,7 @@ Scanner::Scanner(const Evidence& evidence, const std::vector<ScannedCandidate>& 
     : evidence_(evidence),
       thresholds_(evidence.thresholds().pool),
       candidates_(candidates),
-      families_(evidence, candidates),
+      families_(candidates),
       by_rows_(evidence) {}
 
 namespace {
