@@ -38,13 +38,13 @@ namespace {
 class Diagnoser {
  public:
   Diagnoser(const std::string& text, const model::Machine& machine, const model::Measurement& measurement,
-            const DiagnoseOptions& options)
+            const DiagnoseOptions& options, std::size_t most_effects)
       : options_(options),
         measurement_(measurement),
         machine_(machine),
         base_(fit_first(machine, measurement)),
         text_(model::update_machine_text(text, base_.machine, true)),
-        finder_(base_.machine, measurement, options.effects, options.most_effects, options.progress,
+        finder_(base_.machine, measurement, options.effects, most_effects, options.progress,
                 options.thresholds),
         pool_(finder_.pool()) {}
 
@@ -523,8 +523,9 @@ bool has_effect_of_runs(const Diagnosis& answer) {
 
 /// Runs the search, and repeats it without gross outliers if these may be the cause.
 Diagnosis searched(const std::string& text, const model::Machine& machine,
-                   const model::Measurement& measurement, const DiagnoseOptions& options) {
-  Diagnosis all = Diagnoser(text, machine, measurement, options).run();
+                   const model::Measurement& measurement, const DiagnoseOptions& options,
+                   std::size_t most_effects) {
+  Diagnosis all = Diagnoser(text, machine, measurement, options, most_effects).run();
   if (!all.base.mistake.empty()) return all;
   // A drift of the instrument, or outliers beside found effects, need not be the whole cause either.
   const bool more_than_outliers = all.verdict == Verdict::kInstrument && !all.time_base.found;
@@ -535,7 +536,8 @@ Diagnosis searched(const std::string& text, const model::Machine& machine,
   const auto rest =
       without_gross_outliers(all.end.machine, rows, all.end.residual, options.thresholds.verdict);
   if (!rest || rows.rows() != measurement.rows()) return all;
-  Diagnosis clean = Diagnoser(text, machine, model::select_rows(measurement, rest->kept), options).run();
+  Diagnosis clean =
+      Diagnoser(text, machine, model::select_rows(measurement, rest->kept), options, most_effects).run();
   clean.left_out = left_out_of(clean, measurement, rest->kept);
   withdraw_if_all_check_rows_contradict(clean, measurement, options.thresholds.verdict);
   if (!rest->step.empty() && all.explanation.find(rest->step) == std::string::npos)
@@ -582,6 +584,24 @@ void withdraw_if_the_fit_contradicts(Diagnosis& answer) {
   }
 }
 
+/// Searches with fewer effects as long as the fit of all effects found does not converge: effects that
+/// compensate each other hide those that the readings determine.
+Diagnosis searched_to_a_fit(const std::string& text, const model::Machine& machine,
+                            const model::Measurement& measurement, const DiagnoseOptions& options) {
+  constexpr std::size_t kFewer = 2;  // of five effects, three and then one are tried
+  Diagnosis answer = searched(text, machine, measurement, options, options.most_effects);
+  for (std::size_t found = answer.ladder.size(); !answer.end.converged && found > kFewer + 1;
+       found -= kFewer) {
+    Diagnosis with_fewer = searched(text, machine, measurement, options, found - 1 - kFewer);
+    if (!with_fewer.end.converged) continue;
+    with_fewer.explanation += fmt::format(
+        " The fit with more effects does not converge: the readings do not determine {} of them together.",
+        answer.ladder.size() - 1);
+    return with_fewer;
+  }
+  return answer;
+}
+
 }  // namespace
 
 Diagnosis diagnose(const std::string& text, const model::Machine& given,
@@ -589,8 +609,8 @@ Diagnosis diagnose(const std::string& text, const model::Machine& given,
   model::require_time_order(measurement);
   const std::optional<WithoutCopies> distinct = without_copies(measurement);
   Diagnosis answer =
-      searched(text, effects::with_base_row(given),
-               distinct ? model::select_rows(measurement, distinct->kept) : measurement, options);
+      searched_to_a_fit(text, effects::with_base_row(given),
+                        distinct ? model::select_rows(measurement, distinct->kept) : measurement, options);
   if (distinct) answer.explanation += " " + distinct->sentence;
   withdraw_if_the_fit_contradicts(answer);
   return answer;

@@ -110,6 +110,14 @@ TEST(Improve, BadlyDeterminedStationsAreNoEvidenceAgainstABacklash) {
               ElementsAre("backlash", "backlash", "backlash"));
 }
 
+/// Laser runs and a tracker with directions, both without u. The fit of the five effects found first does not
+/// converge, and nothing was written; two of them are backlashes of 14 and 8 um.
+TEST(Improve, AddsWhatIsDeterminedWhereTheFitOfAllEffectsDoesNotConverge) {
+  const Improved result = improve("mill_without_u");
+  EXPECT_THAT(result.effects(), ElementsAre("backlash", "backlash"));
+  EXPECT_THAT(result.said, HasSubstr("The fit with more effects does not converge"));
+}
+
 /// The scale steps at the begin of a run, as after a collision. A slow response to heat that begins again in
 /// each run explains these rows as well, and was added.
 TEST(Improve, AddsNoHeatThatAChangeBetweenTheRunsExplainsAsWell) {

@@ -792,6 +792,24 @@ async function pointsOfAMill(page) {
     'y',
     'z',
   ]);
+  // A line above points without headings: the field "skip" is the command's too.
+  const places = [
+    [100, 200, -50],
+    [900, 200, -50],
+    [500, 600, -100],
+    [300, 300, -20],
+    [700, 500, -120],
+  ];
+  const list = (cells, head = '') => `${head}${places.map((row, i) => [`Q${i + 1}`, ...cells(row)].join(';')).join('\n')}\n`;
+  await page.drop([{ name: 'mill_list.csv', text: list((row) => row, 'Punkt;X [mm];Y [mm];Z [mm]\n') }]);
+  await page.drop([
+    { name: 'titled.txt', text: list((row) => row.map((one, k) => (one + 1000 * k).toFixed(4)), 'Messung der Fraese, 5 Punkte, in mm\n') },
+  ]);
+  const titled = '[data-of="titled.txt"]';
+  await page.choose(`${titled} select:has(option[value=tracker])`, 'tracker');
+  await page.type(`${titled} [data-option=skip]`, '1');
+  await page.type(`${titled} [data-option=nominal]`, 'mill_list.csv');
+  await page.until(`document.querySelector('${titled} [data-option=comment]')`, 'the field of comments');
 }
 
 /** The same as a controller and a tracker write them: no units, a decimal comma, the points in another order. */

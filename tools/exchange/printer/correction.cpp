@@ -122,9 +122,9 @@ void fit_straight_parts(PrinterCorrection& correction, const PrinterFeatures& fe
   const Matrix3Xd points = grid(axes, {kPositions, kPositions, kPositions});
   StraightParts parts = straight_parts(points, needed(machine, axes, points, at));
   const StraightParts std = std_of_parts(machine, axes, at, by_all);
-  // A part that is 0, and that no parameter of the last fit changes, was not measured either.
-  const bool known = machine.fitted && machine.fitted->open_known;
-  const StraightParts seen = known ? std_of_parts(machine, axes, at, true) : StraightParts::Ones();
+  // A part that is 0, and that no parameter of the last fit changes, was not measured either; without a fit
+  // none of them was.
+  const StraightParts seen = std_of_parts(machine, axes, at, true);
   constexpr double kZero = 1e-9;  // rad, and part of a length: below the digits of all files
   const std::array<const char*, 6> names = {"XY", "XZ", "YZ", "X", "Y", "Z"};
   const std::array<std::size_t, 6> along = {1, 2, 2, 0, 1, 2};  // the axis over which the part adds up

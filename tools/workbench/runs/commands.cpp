@@ -34,11 +34,10 @@ constexpr Allowed kAllowed[] = {
     {"import ballbar", false, true, "files repair-time-base output"},
     {"import ballbar-trace", false, true, "files radius plane length feed output"},
     {"import tracker", false, true,
-     "file map separator decimal skip header column set directions check-every machine nominal "
-     "nominal-column "
-     "tolerance output"},
+     "file map separator decimal skip comment header column set directions check-every machine nominal "
+     "nominal-column tolerance output"},
     {"import probe", false, true,
-     "file map separator decimal skip header column set directions check-every radius output"},
+     "file map separator decimal skip comment header column set directions check-every radius output"},
     {"import laser", false, true, "file output"},
     {"import printer", false, true, "file profile on offset twist series u output"},
     {"fit", false, true, "machine meas images loss free hold output!"},
@@ -57,7 +56,8 @@ constexpr Allowed kAllowed[] = {
     {"export heidenhain", false, true, "machine leave-out at accept step tolerance reference output"},
     {"export fanuc", false, true, "machine leave-out at accept step tolerance reference numbers unit output"},
     {"export linuxcnc", false, true, "machine leave-out at accept component tolerance type output"},
-    {"export klipper", false, true, "machine leave-out at accept steps tolerance profile bed touches zero output"},
+    {"export klipper", false, true,
+     "machine leave-out at accept steps tolerance profile bed touches zero output"},
     {"export rrf", false, true, "machine leave-out at accept steps tolerance bed touches zero output"},
     {"export marlin", false, true, "machine leave-out at accept steps tolerance bed touches zero output"},
     {"export grbl", false, true, "machine leave-out at accept steps tolerance output"},

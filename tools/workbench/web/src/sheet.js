@@ -116,14 +116,14 @@ const axesOf = (machine) =>
     () => [],
   );
 
-/** The options of an import without the preview's help: a tracker's and a probe's table. */
-function ofPreview(preview) {
+/** The options of an import without the preview's help: a tracker's and a probe's table. `typed`: the fields of the text. */
+function ofPreview(preview, typed) {
   // A table without headings has none: the first point must not be taken for them.
   const named = preview.heading_line != null;
   return {
     separator: preview.separator === 'blanks' ? 'space' : preview.separator,
     decimal: preview.decimal,
-    skip: named ? preview.heading_line - 1 : 0,
+    skip: named ? preview.heading_line - 1 : (typed.skip ?? 0),
     header: named,
     column: preview.columns
       .map((one, k) => ({ ...one, source: named ? one.heading : k + 1 }))
@@ -291,7 +291,7 @@ export async function importSheet(box, name, handOver, asks = false, earlier = n
       const output = freeName(`${name.replace(/\.[^.]*$/, '')}_${several && sheet ? inFileName(sheet) : 'read'}`, '.csv');
       const options = kind === 'table' ? { ...ofSheet(), ...columns(), ...ofPoints() } : {};
       // The preview has read the text with the answers of the fields, and knows the rest.
-      const values = { ...forms[kind].values(), ...(kind === 'table' ? {} : ofPreview(preview)) };
+      const values = { ...forms[kind].values(), ...(kind === 'table' ? {} : ofPreview(preview, forms[kind].values())) };
       // The list of nominal positions, and the position of a point, have the axes of the machine.
       const of = store.machine || machine_of_earlier,
         machine = (values.nominal || options.point) && of ? { machine: of } : {};
