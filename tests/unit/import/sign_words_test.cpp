@@ -54,6 +54,8 @@ const Case kCases[] = {
     {"Vorzeichen: Ist - Soll", kTitle, kActual},
     {"Deviation = measured minus commanded", kTitle, kActual},
     {"Abweichung = Maschine - Laser", kTitle, kNominal},
+    {"Fehler = Anzeige Steuerung - Laser", kTitle, kNominal},
+    {"Error = CNC - laser", kTitle, kNominal},
     {"Abweichung = Laser - Maschine", kTitle, kActual},
     // Headings are about their column.
     {"Abweichung (Soll-Ist) 1+ [um]", kHeading, kNominal},

@@ -19,10 +19,11 @@ namespace {
 using WordSet = std::set<std::string, std::less<>>;
 
 /// Words before a nominal or an actual value, or behind it, without a meaning for the sign.
-const WordSet kBesideOperand = {
-    "position", "pos",  "positionen", "positions", "value",      "wert",   "werte",     "axis",    "achse",
-    "der",      "die",  "das",        "des",       "the",        "values", "von",       "of",      "maß",
-    "mass",     "lage", "koordinate", "punkt",     "coordinate", "point",  "dimension", "stellung"};
+const WordSet kBesideOperand = {"position",  "pos",      "positionen", "positions", "value",      "wert",
+                                "werte",     "axis",     "achse",      "der",       "die",        "das",
+                                "des",       "the",      "values",     "von",       "of",         "maß",
+                                "mass",      "lage",     "koordinate", "punkt",     "coordinate", "point",
+                                "dimension", "stellung", "anzeige",    "display"};
 /// Words of a comparison or of a document: "Soll-Ist-Vergleich" states no sign.
 const WordSet kComparisons = {"vergleich", "comparison", "compare", "tabelle",  "table",     "protokoll",
                               "report",    "bericht",    "messung", "liste",    "list",      "daten",
@@ -43,11 +44,11 @@ struct SignToken {
 enum class OperandRole { kNone, kAside, kNominal, kActual, kReference };
 
 bool says_nominal(const std::string& word) {
-  static const WordSet kWords = {"target",       "targets",   "nominal",     "nom",         "cmd",
-                                 "command",      "commanded", "setpoint",    "ziel",        "programmed",
-                                 "prog",         "desired",   "required",    "theoretical", "vorgabe",
-                                 "zielposition", "zielwert",  "theoretisch", "machine",     "maschine",
-                                 "expected",     "demand"};
+  static const WordSet kWords = {
+      "target",   "targets",      "nominal",    "nom",         "cmd",     "command",  "commanded",
+      "setpoint", "ziel",         "programmed", "prog",        "desired", "required", "theoretical",
+      "vorgabe",  "zielposition", "zielwert",   "theoretisch", "machine", "maschine", "expected",
+      "demand",   "steuerung",    "control",    "controller",  "cnc"};
   return kWords.contains(word) || (word.starts_with("soll") && word != "sollte" && word != "sollten") ||
          word.starts_with("nenn") || word.starts_with("nominal");
 }
@@ -82,7 +83,7 @@ OperandRole role_of(const std::string& word) {
 
 /// A machine or an instrument instead of its position.
 bool is_instrument(const std::string& word) {
-  static const WordSet kWords = {"machine", "maschine", "laser", "tracker"};
+  static const WordSet kWords = {"machine", "maschine", "steuerung", "control", "cnc", "laser", "tracker"};
   return kWords.contains(word);
 }
 
