@@ -77,10 +77,9 @@ double step_with_enough_readings(const LineOfAxis& line, double spacing, std::si
 std::vector<DensePoints> dense_points(const model::Machine& machine,
                                       const std::vector<std::vector<double>>& positions,
                                       const std::vector<std::size_t>& readings) {
-  constexpr double kTimes =
-      2;  // steps of the points between two stations: one point between them shows a curve
-  constexpr double kMostParts = 100;
-  constexpr double kRounding = 0.01;
+  constexpr double kTimes = 2;        // steps from one station to the next: one point between shows a curve
+  constexpr double kMostParts = 100;  // of the line, at the proposed distance
+  constexpr double kRounding = 0.01;  // of kTimes
   constexpr std::size_t kEnough = 8;  // positions
   std::vector<DensePoints> list;
   for (const model::Table& table : machine.tables) {

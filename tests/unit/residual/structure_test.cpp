@@ -305,7 +305,8 @@ TEST(FailurePicture, OnePatternIsOnePeriod) {
   plant_saw(saw, 10e-3);
   const std::vector<Finding> of_saw = periods(saw.picture());
   ASSERT_EQ(of_saw.size(), 1U);
-  EXPECT_NEAR(*of_saw[0].period, 36.7, 0.1);
+  // The overtones of the saw tooth are a noise for its period: a tenth of a cycle of the 16 in 600 mm.
+  EXPECT_NEAR(*of_saw[0].period, 36.7, 36.7 / 16 / 10);
   ASSERT_GE(of_saw[0].parts.size(), 2U);
   EXPECT_NEAR(of_saw[0].parts[0], 36.7 / 2, 0.1);
   EXPECT_NE(of_saw[0].sentence.find("belong to this pattern"), std::string::npos);
