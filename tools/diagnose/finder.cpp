@@ -651,22 +651,21 @@ std::string Finder::failed_on_positions(std::size_t item, double gain) const {
   const bool found = pool_.is_custom(item);
   const double least =
       found ? thresholds_.held_out_share * gain : 2 * kEvidenceOfNothing * variance_of_reading();
-  for (const std::vector<int>& places : place_blocks(evidence_, pool_.candidate(item).choice.axis))
-    if (held_out_decrease(item, places) < least &&
-        density_gain(item, places) < thresholds_.held_out_share * gain)
-      return "test `held out`: the effect does not reduce the residual of readings at held-out positions";
-  return {};
-}
-
-double Finder::density_gain(std::size_t item, const std::vector<int>& places) const {
-  // Where the other positions determine a table badly, its error is larger than that of the readings, and the
-  // difference of two sums of squares shows this error alone.
   std::vector<std::size_t> others = without(item), all = {item};
   all.insert(all.end(), others.begin(), others.end());
-  const HeldOut less = leave_blocks_out(evidence_, pool_.columns(others), 0, 0, places),
-                with = leave_blocks_out(evidence_, pool_.columns(all), 0, 0, places);
-  return less.predicted_square - with.predicted_square +
-         variance_of_reading() * (less.predicted_log_determinant - with.predicted_log_determinant);
+  for (const std::vector<int>& places : place_blocks(evidence_, pool_.candidate(item).choice.axis)) {
+    const HeldOut less = leave_blocks_out(evidence_, pool_.columns(others), 0, 0, places),
+                  with = leave_blocks_out(evidence_, pool_.columns(all), 0, 0, places);
+    if (less.chi_square - with.chi_square >= least) continue;
+    // Where the other positions determine a table badly, its error is larger than that of the readings, and
+    // the difference of two sums of squares shows this error alone: -2 log of the density decides.
+    const double density =
+        less.predicted_square - with.predicted_square +
+        variance_of_reading() * (less.predicted_log_determinant - with.predicted_log_determinant);
+    if (density < thresholds_.held_out_share * gain)
+      return "test `held out`: the effect does not reduce the residual of readings at held-out positions";
+  }
+  return {};
 }
 
 double Finder::variance_of_reading() const {

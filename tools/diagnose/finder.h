@@ -214,9 +214,6 @@ class Finder {
   std::string failed_on_levels(std::size_t item, double gain) const;
   std::string failed_on_positions(std::size_t item, double gain) const;
   std::string failed_between_stations(std::size_t item) const;
-  /// Returns the decrease of -2 log of the density of held-out positions (HeldOut) by an accepted effect,
-  /// times the variance of a reading.
-  double density_gain(std::size_t item, const std::vector<int>& places) const;
   /// Returns the blocks of rows that are held out for an effect: whole runs, or parts of runs for an effect
   /// that acts in single runs.
   std::vector<int> runs_to_hold_out(std::size_t item) const;

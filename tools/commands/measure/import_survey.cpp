@@ -19,6 +19,7 @@
 #include "tools/model/measurement.h"
 #include "tools/sheet/encoding.h"
 #include "tools/text/optional_json.h"
+#include "tools/text/words.h"
 
 namespace vernier::commands::import_cli {
 namespace {
@@ -209,13 +210,11 @@ void print_joined(std::FILE* out, const importer::NominalTable& joined, const st
 
 /// The note about directions that follow from an order: which one, and what it assumes.
 std::string note_of_order(const std::vector<std::string>& columns, const SurveyArguments& arguments) {
-  std::string names;
-  for (const std::string& one : columns) names += (names.empty() ? "" : ", ") + one;
   return fmt::format(
       "the approach directions ({}) follow from the order of the {} in {}: each axis has the direction of "
       "its "
       "last motion{}. Check that this is the order of the measurement",
-      names, arguments.nominal.empty() ? "points" : "positions",
+      text::joined(columns, ", "), arguments.nominal.empty() ? "points" : "positions",
       arguments.nominal.empty() ? arguments.file : arguments.nominal,
       arguments.nominal.empty() ? "" : ", also of the motion to a position without a point");
 }
