@@ -210,6 +210,14 @@ class Diagnoser {
     return StepEvidence{together, false};
   }
 
+  /// True if runs held out in turn can replace check rows, of which there are none: for a named effect of all
+  /// runs without a searched shape. All runs have the same targets, and can share the shape of another error.
+  bool runs_alone_confirm(std::size_t item) const {
+    return std::none_of(measurement_.check.begin(), measurement_.check.end(),
+                        [](char c) { return c != 0; }) &&
+           !pool_.is_custom(item) && !is_searched(item) && pool_.candidate(item).choice.runs.empty();
+  }
+
   /// Variance of the independent noise of a weighted reading beside a fit, for proof_on_check_rows().
   double variance_beside(const fit::FitResult& fit) const {
     if (!finder_.evidence().noise_of_file().independent()) return 1;
@@ -266,7 +274,8 @@ class Diagnoser {
   /// The stepwise model with its fits.
   struct Steps {
     std::vector<std::size_t> accepted;       // items that lower chi^2 in the fit, and that the rows confirm
-    std::set<std::size_t> confirmed;         // of these, items that the check rows confirm
+    std::set<std::size_t> confirmed;         // of these, items that the check rows confirm; without check
+                                             // rows, those that held-out runs confirm without doubt
     std::vector<std::string> not_confirmed;  // names of steps that the check rows do not confirm
     std::vector<Contradicted> contradicted;  // of these, items that one file of check rows contradicts
     std::vector<LadderStep> ladder;          // begins with the model as given
@@ -319,9 +328,10 @@ class Diagnoser {
         exclude();
         continue;
       }
-      // Check rows that favour the step, beside runs held out in turn that leave no doubt.
-      if (confirmation->of_check_rows ||
-          (proof.evidence > 0 && confirmation->value > options_.thresholds.proof.contradiction))
+      // Check rows that favour the step, beside runs held out in turn that leave no doubt; without check
+      // rows, such runs alone.
+      const bool without_doubt = confirmation->value > options_.thresholds.proof.contradiction;
+      if (confirmation->of_check_rows || (without_doubt && (proof.evidence > 0 || runs_alone_confirm(item))))
         steps.confirmed.insert(item);
       steps.ladder.push_back(step_of(item, fitted, *confirmation));
       steps.machine_text = fitted.text;
@@ -471,7 +481,7 @@ class Diagnoser {
   std::vector<std::size_t> accepted_;        // of the finder, without those that gain nothing in the fit
   std::vector<effects::Candidate> effects_;  // accepted ones, as in the last fit
   std::vector<std::size_t> listed_;
-  std::set<std::size_t> confirmed_;         // items that the check rows confirm
+  std::set<std::size_t> confirmed_;         // items that held-out rows confirm, see Steps
   std::vector<std::string> not_confirmed_;  // labels of steps that the check rows contradict
   std::vector<Alternatives> alternatives_;  // to each accepted effect
   Diagnosis result_;

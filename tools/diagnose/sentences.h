@@ -57,6 +57,11 @@ std::string go_back_in_words();
 /// Returns the sentence about an instrument that drifts as the named effect does.
 std::string drift_of_instrument_in_words();
 
+/// Returns a sentence with the residual of the machine file (the set-up fitted) and the residual after a fit
+/// of its parameters, if the fit reduces the residual by much: the diagnosis searches after this fit. Empty
+/// if the fit does not.
+std::string fit_reduces_in_words(const fit::FitResult& base);
+
 /// Returns the sentence about a residual (rms) that is mostly left beside the named effects and that no
 /// stated noise explains.
 std::string most_remains_in_words(double before_um, double after_um);

@@ -134,15 +134,17 @@ class Decision {
 
   std::string nothing_to_add() {
     if (!is_alone_in_noise()) return {};
+    const std::string fit = fit_reduces_in_words(answer_.base);
     // A residual of any size can be without structure.
-    if (is_noise_stated()) return with_refused("The residual is noise: there is nothing to add.");
+    if (is_noise_stated()) return with_refused("The residual is noise: there is nothing to add." + fit);
     const std::string nothing =
         "The residual has no structure that a candidate explains: there is nothing to add. ";
     if (fit::repeats_in_other_runs(found_.measurement))
-      return with_refused(nothing + fit::kRepeatsInOtherRuns);
+      return with_refused(nothing + fit::kRepeatsInOtherRuns + fit);
     return with_refused(nothing +
                         "The readings have no u and no repeats, so the diagnosis cannot tell "
-                        "whether a residual of this size is the noise of the instrument.");
+                        "whether a residual of this size is the noise of the instrument." +
+                        fit);
   }
 
   std::string nothing_explains() {

@@ -161,7 +161,7 @@ std::vector<std::string> notes_of_missing_directions(const model::Machine& machi
           "rows, "
           "so that they contradict one. If the rows are in the order of the measurement, import the file "
           "again "
-          "with the directions of the motion (import table --directions from-order)",
+          "with the directions of the motion (option --directions from-order of vernier import)",
           rows.files[file], fmt::join(missing[file], ", ")));
   return notes;
 }

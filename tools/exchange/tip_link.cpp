@@ -8,6 +8,7 @@
 #include <pugixml.hpp>
 
 #include "tools/maths/factors.h"
+#include "tools/model/expression.h"
 #include "tools/text/words.h"
 
 namespace vernier::exchange {
@@ -24,6 +25,13 @@ Eigen::Vector3d tool_point(const model::Machine& machine) {
 
 std::string label_of(const model::BaseShift& shift) {
   return shift.run ? fmt::format("ToolShift[{}]", *shift.run) : "ToolShift";
+}
+
+/// Place of a ToolShift in the frame in which `vernier new --tool` takes the tool point, mm: that of a link.
+Eigen::Vector3d place_in_link(const model::Machine& machine, const model::BaseShift& shift,
+                              const TipLink& link) {
+  return link.frame.inverse() *
+         (tool_point(machine) + Eigen::Vector3d(shift.value[0], shift.value[1], shift.value[2]));
 }
 
 }  // namespace
@@ -46,11 +54,21 @@ std::optional<TipLink> tip_link(const std::string& text) {
   return std::nullopt;
 }
 
-Eigen::Vector3d tool_shift_place(const model::Machine& machine, const model::BaseShift& shift,
-                                 const std::optional<TipLink>& link) {
-  const Eigen::Vector3d in_row =
-      tool_point(machine) + Eigen::Vector3d(shift.value[0], shift.value[1], shift.value[2]);
-  return link ? Eigen::Vector3d(link->frame.inverse() * in_row) : in_row;
+std::optional<model::Machine> with_tool_point_at_reflector(const model::Machine& machine) {
+  if (machine.tool_shifts.size() != 1 || machine.tool_shifts.front().run) return std::nullopt;
+  model::Machine moved = machine;
+  model::Transform row;
+  row.line = 0;  // not in the file
+  row.n = moved.tool.empty() ? 1 : moved.tool.back().n + 1;
+  for (std::size_t dof = 0; dof < row.dof_count(); ++dof) {
+    double& shift = moved.tool_shifts.front().value[dof];
+    const double at = dof < 3 ? shift : 0;
+    if (dof < 3) shift = 0;
+    row.text[dof] = fmt::format("{}", at);
+    row.dof[dof] = model::make_number(at);
+  }
+  moved.tool.push_back(row);
+  return moved;
 }
 
 TipLink tool_link(const model::Machine& machine, const std::string& name) {
@@ -63,7 +81,7 @@ std::vector<std::string> tool_shift_places(const model::Machine& machine, const 
                                            const std::string& urdf) {
   std::vector<std::string> sentences;
   for (const model::BaseShift& shift : machine.tool_shifts) {
-    const Eigen::Vector3d at = tool_shift_place(machine, shift, link);
+    const Eigen::Vector3d at = place_in_link(machine, shift, link);
     sentences.push_back(
         fmt::format("{} is at {:.4f}, {:.4f}, {:.4f} mm in the frame of the link {} of {}; its "
                     "parameters are in the frame of the last row of the machine file",

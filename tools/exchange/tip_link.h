@@ -19,10 +19,10 @@ struct TipLink {
 /// Returns the end link of a machine file; no value without the attribute. `text`: the machine file, valid.
 std::optional<TipLink> tip_link(const std::string& text);
 
-/// Returns the place of a ToolShift in the frame in which `vernier new --tool` takes the tool point, mm: that
-/// of the end link of the URDF, otherwise that of the last row.
-Eigen::Vector3d tool_shift_place(const model::Machine& machine, const model::BaseShift& shift,
-                                 const std::optional<TipLink>& link);
+/// Returns the machine with the tool point at the reflector of its ToolShift, which becomes 0: a running
+/// correction acts at the tool point, and readings of the reflector judge it there only. No value without a
+/// ToolShift of all rows, or with a ToolShift of single runs.
+std::optional<model::Machine> with_tool_point_at_reflector(const model::Machine& machine);
 
 /// Returns the end link of a URDF that was written without an original: its frame is the last row of the
 /// machine file, with the origin at the tool point.

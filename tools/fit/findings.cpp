@@ -370,12 +370,13 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
       !far.empty())
     list.push_back({"far-from-nominal", 1, far});
   add_exact_lengths(result, m, list);
-  if (const std::string names = planes_of_probe(result, m); !names.empty())
+  const std::string planes = planes_of_probe(result, m);
+  if (!planes.empty())
     list.push_back({kFlatnessAssumed, 0,
                     fmt::format("{} was taken as flat, and no other reading shows its bow: a bow of it "
                                 "counts as an error of the "
                                 "axes, at the position of the axes and not where the probe touched.",
-                                names)});
+                                planes)});
   add_computed_positions(result, m, list);
   add_axes_that_stood(result.machine, record, list);
   add_rows_outside_travel(result.machine, m, list);
@@ -407,10 +408,14 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
                                 *result.check_ratio)});
   // The residual alone does not distinguish a disturbance from an effect that the model does not contain.
   if (!record.disturbance.empty())
-    list.push_back({"disturbed", record.disturbed,
-                    "Possibly the survey was disturbed: " + record.disturbance +
-                        ". A missing effect (such as a backlash) can look like this disturbance: vernier "
-                        "diagnose compares the causes."});
+    list.push_back(
+        {"disturbed", record.disturbed,
+         "Possibly the survey was disturbed: " + record.disturbance + ". " +
+             (planes.empty() ? std::string("A missing effect (such as a backlash) can look")
+                             : fmt::format("The shape of {}, which was taken as flat, or a missing "
+                                           "effect (such as a backlash) can look",
+                                           planes)) +
+             " like this disturbance: vernier diagnose compares the causes."});
   if (const double share = repeated_poses(m); share >= 0.5)
     list.push_back({"check-not-independent", share,
                     fmt::format("{:.0f} % of the check rows repeat poses of fit rows: these check rows "

@@ -100,7 +100,7 @@ void look_for_missing_directions(const LintTable& table, const LintNames& names,
             poses, axis->name, sense),
         fmt::format(
             "if the rows are in the order of the measurement, import the file again with the directions "
-            "of the motion (import table --directions from-order), or add the column {}",
+            "of the motion (option --directions from-order of vernier import), or add the column {}",
             sense));
   }
 }

@@ -94,7 +94,7 @@ void compare_directions(const model::Machine& machine, const std::vector<std::st
           sense, text::printable(files[usable[static_cast<std::size_t>(with - rows.begin())]].file));
       warning.meaning =
           "if the rows are in the order of the measurement, import the file again with the directions of the "
-          "motion (import table --directions from-order)";
+          "motion (option --directions from-order of vernier import)";
       files[usable[k]].findings.push_back(std::move(warning));
     }
   }

@@ -554,6 +554,7 @@ class Describer {
     facts.monotone = std::abs(facts.at_high_um - facts.at_low_um) > kMonotone * reach;
     const ColumnKind kind = context_.columns[term.column].kind;
     facts.time = kind == ColumnKind::kTime || kind == ColumnKind::kVisit;
+    facts.direction = kind == ColumnKind::kDirection;
     if (kind != ColumnKind::kRun) return;
     const auto& names = context_.measurement.states.run_names;
     facts.highest_run = names[static_cast<std::size_t>(facts.highest_at)];

@@ -39,6 +39,11 @@ std::string grows(const SentenceFacts& facts) {
   return facts.at_high_um > facts.at_low_um ? "grows" : "falls";
 }
 
+std::string reverses(const Finding& f) {
+  return fmt::format("{} reverses with {}: {:.3g} {} between the two approach directions", subject(f),
+                     f.column, f.high_um - f.low_um, unit_of(f));
+}
+
 std::string along_column(const Finding& f, const SentenceFacts& facts) {
   const std::string change = facts.time ? (facts.monotone ? "drifts" : "drifts and returns") : grows(facts);
   switch (f.shape) {
@@ -53,6 +58,8 @@ std::string along_column(const Finding& f, const SentenceFacts& facts) {
     default:
       break;
   }
+  // The curve has three places: the two directions, and the rows whose direction is not known.
+  if (facts.direction && facts.monotone) return reverses(f);
   if (facts.monotone)
     return fmt::format("{} {} with {}, on a curve ({})", subject(f), change, f.column, spanning(f, facts));
   return fmt::format("{} bends with {}: highest near {}, lowest near {} ({})", subject(f), f.column,
@@ -84,8 +91,7 @@ std::string statement(const Finding& f, const SentenceFacts& facts) {
     case Shape::kConstant:
       return fmt::format("{} is {:.3g} {} on average", subject(f), (f.high_um + f.low_um) / 2, unit_of(f));
     case Shape::kReverses:
-      return fmt::format("{} reverses with {}: {:.3g} {} between the two approach directions", subject(f),
-                         f.column, f.high_um - f.low_um, unit_of(f));
+      return reverses(f);
     case Shape::kJumps:
       return fmt::format("{} jumps between runs: {:.3g} {} from run {} to run {}", subject(f),
                          f.high_um - f.low_um, unit_of(f), facts.lowest_run, facts.highest_run);

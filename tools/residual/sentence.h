@@ -16,7 +16,8 @@ struct SentenceFacts {
                                          // minimum
   double step = 0;                       // of positions that are multiples of one step; 0: they are not
   bool monotone = false, time = false;
-  bool in_space = false;  // successive rows are neighbours in position
+  bool direction = false;  // a column of approach directions: -1, 0 (not known), 1
+  bool in_space = false;   // successive rows are neighbours in position
   std::string highest_run, lowest_run;
   std::vector<std::string> disagreeing;  // runs in which the effect should be visible but is not
 };

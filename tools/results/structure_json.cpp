@@ -27,9 +27,11 @@ std::string without_findings(const Json& result, const residual::FailurePicture&
         "reflector or of the tool is not known, the readings are not those of these rows, or u is too small",
         rms_um / noise_um);
   if (picture.omnibus_p < kNoChance) return "the residual has structure, but no single column explains it";
-  const bool unknown_noise = rms_um > 0 && noise_um <= 0;
-  return std::string("the residual has no structure beyond chance") +
-         (unknown_noise ? "; u is not stated: whether the residual is small enough is not known" : "");
+  if (rms_um > 0 && noise_um <= 0)
+    return "no single column explains the residual, and u is not stated: whether the residual is noise is "
+           "not "
+           "known";
+  return "the residual has no structure beyond chance";
 }
 
 Json triple(const Eigen::Vector3d& v) { return Json::array({v[0], v[1], v[2]}); }

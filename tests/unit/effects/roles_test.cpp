@@ -124,7 +124,7 @@ TEST_F(Roles, FileWithoutTheDirectionsOfAnotherIsNamed) {
   const std::vector<std::string> said = complete_columns(machine(), rows);
   ASSERT_EQ(said.size(), 1u) << "the gauge was read at one position, which has no direction";
   EXPECT_EQ(said[0].rfind("tracker.csv has no dirX, and another file has.", 0), 0u) << said[0];
-  EXPECT_NE(said[0].find("(import table --directions from-order)"), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find("(option --directions from-order of vernier import)"), std::string::npos) << said[0];
 }
 
 TEST_F(Roles, WhatIsNoRoleOrNoColumnIsRefusedByName) {

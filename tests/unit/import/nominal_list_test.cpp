@@ -2,11 +2,15 @@
 // Points of a tracker and a separate list of nominal positions.
 #include "tools/import/logs/nominal_list.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
+#include <vector>
 
+#include "tools/import/logs/nominal_points.h"
 #include "tools/import/tables/survey.h"
 #include "tools/model/machine_reader.h"
 #include "tools/text/error.h"
@@ -171,6 +175,71 @@ TEST(NominalList, JointsMayHaveTheirUsualNames) {
   EXPECT_THAT([&] { with_nominal(table, bare, machine, 1e6); },
               testing::ThrowsMessage<text::InputError>(
                   HasSubstr("--nominal-column \"joint_1[deg]=A7\": the sheet has no column")));
+}
+
+/// Points of the robot at these joints, 1000, -500 and 300 mm from its origin.
+ImportTable points_at(const std::vector<std::array<double, 3>>& joints, const model::Machine& machine) {
+  ImportTable poses{"pts.txt", {}, {}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::vector<double> values;
+    for (const auto& row : joints) values.push_back(row[k]);
+    poses.add(machine.axes[k].name, "deg", values);
+  }
+  for (std::size_t i = 0; i < joints.size(); ++i) poses.line.push_back(i + 1);
+  const model::Poses nominal = nominal_poses(poses, machine);
+  ImportTable table{"pts.txt", {}, poses.line};
+  constexpr std::array<double, 3> kAway_mm = {1000, -500, 300};
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      values.push_back(nominal.position(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) +
+                       kAway_mm[k]);
+    table.add(std::string(1, "xyz"[k]), "mm", values);
+  }
+  return table;
+}
+
+TEST(NominalList, AJointThatTheListCountsOtherwiseIsNamed) {
+  // The control counts A2 in the other direction, and A3 from 90 deg on. The tool point is beside the plane
+  // of the arm: the mirror image of the arm is another one.
+  std::string robot = kRobot;
+  robot.insert(robot.find("</transforms>"), R"(<sixdof n="4" X="50" Y="35" Z="20" rX="0" rY="0" rZ="0"/>)");
+  const model::Machine machine = model::parse_machine(robot, "r.xml");
+  const std::vector<std::array<double, 3>> joints = {{0, 10, 20},  {30, -40, 55},  {-60, 25, -35},
+                                                     {80, 60, 10}, {-20, -15, 70}, {45, 35, -80}};
+  const ImportTable table = points_at(joints, machine);
+  std::string list = "A1 [deg];A2 [deg];A3 [deg]\n", plain = list, swapped = list;
+  for (const auto& [one, two, three] : joints) {
+    list += fmt::format("{};{};{}\n", one, -two, three - 90);
+    plain += fmt::format("{};{};{}\n", one, two, three);
+    swapped += fmt::format("{};{};{}\n", two, one, three);
+  }
+  NominalList nominal{list, "nom.csv", {}, "--nominal-column"};
+  EXPECT_THAT(
+      [&] { with_nominal(table, nominal, machine, 2); },
+      testing::ThrowsMessage<text::InputError>(testing::AllOf(
+          HasSubstr(
+              "With joint_2 = -A2 [deg], joint_3 = A3 [deg]+90 all points agree: the list counts these axes"),
+          HasSubstr(
+              "give: --nominal-column \"joint_1[deg]=A1 [deg]\" --nominal-column \"joint_2[deg]=-A2 [deg]\" "
+              "--nominal-column \"joint_3[deg]=A3 [deg]+90\""))));
+  nominal.columns = {"joint_1[deg]=A1 [deg]", "joint_2[deg]=-A2 [deg]", "joint_3[deg]=A3 [deg]+90"};
+  const std::string right = measurement_csv(with_nominal(table, {plain, "nom.csv"}, machine, 2).table);
+  EXPECT_EQ(measurement_csv(with_nominal(table, nominal, machine, 2).table), right);
+  nominal.columns = {"joint_1[deg]=1", "joint_2[deg]=-2", "joint_3[deg]=3+90"};  // numbers of the columns
+  EXPECT_EQ(measurement_csv(with_nominal(table, nominal, machine, 2).table), right);
+  // A heading that ends with a sign and a number is a heading.
+  std::string odd = plain;
+  odd.replace(odd.find("A2 [deg]"), 8, "Achse-2");
+  NominalList named{
+      odd, "nom.csv", {"joint_1[deg]=A1 [deg]", "joint_2[deg]=Achse-2", "joint_3[deg]=A3 [deg]"}};
+  EXPECT_EQ(measurement_csv(with_nominal(table, named, machine, 2).table), right);
+  // Joints in another order have no such counting.
+  EXPECT_THAT(
+      [&] {
+        with_nominal(table, {swapped, "nom.csv"}, machine, 2);
+      },
+      testing::ThrowsMessage<text::InputError>(HasSubstr("check the order and the names")));
 }
 
 }  // namespace

@@ -111,6 +111,32 @@ TEST(Tracker, OrientationsBecomeTheRotationVectorOfTheChain) {
   EXPECT_NEAR(table.numbers("rz")[0], 0.5, 1e-2);
 }
 
+TEST(Tracker, LinesOfATitleAreFoundAboveATable) {
+  const auto skipped = [](const std::string& text, bool header = false) {
+    DelimitedFormat format;
+    format.header = header;
+    return title_lines(text, "t.txt", format).skip;
+  };
+  const std::string rows = "P1   1.5   2.5   3.5\nP2   4.5   5.5   6.5\nP3   7.5   8.5   9.5\n";
+  EXPECT_EQ(skipped(rows), 0U);
+  EXPECT_EQ(skipped("// AT960  Messung 12.05.2026  Einheit mm\n" + rows), 1U);
+  EXPECT_EQ(skipped("// four words of comment\n" + rows), 1U);
+  EXPECT_EQ(skipped("Messung an der Fraese\n\nTemperatur: 20,3 degC\n" + rows), 3U);
+  EXPECT_EQ(skipped("Messung der Fraese 4711\n" + rows), 1U);  // as many words as a row has fields
+  EXPECT_EQ(skipped("Name X Y Z\n" + rows), 0U);
+  EXPECT_EQ(skipped("Messung vom 12.05.2026, zweiter Aufbau\nName X Y Z\n" + rows, true), 1U);
+  EXPECT_EQ(title_lines("# a\nMessung \"neu\nP1;1,5;2\nP2;3;4\nP3;5;6\n", "t.txt", {}).texts,
+            std::vector<std::string>{"Messung \"neu"});
+  // Rows of more words than numbers.
+  EXPECT_EQ(
+      skipped("Messung 4711\nName;Status;Bemerkung;z\nP1;ok;neu;1,5\nP2;ok;alt;2,5\nP3;ok;alt;3,5\n", true),
+      1U);
+  // A row without a field is an error of the table, and not its title.
+  EXPECT_EQ(skipped("P0   1.5   2.5\n" + rows), 0U);
+  // Headings of two words in a table of blanks: no line is the header.
+  EXPECT_EQ(skipped("Name X [mm] Y [mm] Z [mm]\n" + rows, true), 0U);
+}
+
 TEST(Camera, PosesOfABoardKeepTheirFrame) {
   const std::string map =
       "column 1 = X[mm]\ncolumn 2 = x[m]\ncolumn 3 = y[m]\ncolumn 4 = z[m]\ncolumn 5 = rx[rad]\n"

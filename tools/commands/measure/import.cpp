@@ -62,9 +62,11 @@ std::string call_with(const CLI::App& kind, std::vector<std::string> without, co
 }
 
 void add_nominal_columns(CLI::App& kind, std::vector<std::string>& columns) {
-  kind.add_option(kNominalColumn, columns,
-                  "--nominal: meaning of a column of the list, \"J1[deg]=A1\" (heading or number), as "
-                  "--column of import table; repeat the option for each column")
+  kind.add_option(
+          kNominalColumn, columns,
+          "--nominal: meaning of a column of the list, \"J1[deg]=A1\" (heading or number; -A1+90: the "
+          "control counts it in the other direction and from another zero), as --column of import table; "
+          "repeat the option for each column")
       ->needs("--nominal")
       ->allow_extra_args(false);
 }

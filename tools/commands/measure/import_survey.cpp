@@ -52,6 +52,20 @@ importer::ColumnMap map_of(const SurveyArguments& arguments, const CLI::App& kin
   return map;
 }
 
+/// Omits the lines of a title above the table if the user states no number of lines. Returns a sentence that
+/// quotes them; empty: there are none.
+std::string omit_title(const std::string& text, const std::string& file, bool stated,
+                       importer::DelimitedFormat& format) {
+  if (stated || format.skip > 0) return {};
+  const importer::TitleLines titles = importer::title_lines(text, file, format);
+  format.skip = titles.skip;
+  if (titles.texts.empty()) return {};
+  return fmt::format(
+      "above the table {} that the command does not read: \"{}\"",
+      titles.texts.size() == 1 ? "is a line" : fmt::format("are {} lines", titles.texts.size()),
+      text::joined(titles.texts, "\", \""));
+}
+
 /// The assignments that the list of nominal positions needs beside these points; empty: none, or they are not
 /// known.
 std::string nominal_options_to_try(const SurveyArguments& arguments, const std::string& text,
@@ -76,7 +90,7 @@ std::string nominal_options_to_try(const SurveyArguments& arguments, const std::
 
 /// Refuses a list of which no column has a meaning, with the call that reads it.
 void refuse_without_columns(const SurveyArguments& arguments, const std::string& text,
-                            const importer::ColumnMap& map, const CLI::App& kind) {
+                            const importer::ColumnMap& map, const CLI::App& kind, const std::string& title) {
   const importer::PointColumns point = importer::point_columns(text, arguments.file, map.format);
   // Only a tracker's list is points and their names alone.
   if (point.words.empty() || (point.by_order && kind.get_name() != "tracker"))
@@ -95,7 +109,8 @@ void refuse_without_columns(const SurveyArguments& arguments, const std::string&
                     (comma                         ? " --decimal comma"
                      : kind.count("--decimal") > 0 ? " --decimal " + arguments.decimal
                                                    : "") +
-                    nominal)));
+                    nominal) +
+          (title.empty() ? "" : ". Note: " + title)));
 }
 
 /// Refuses a list of points of which only some coordinates are read: the fit would use a third of the
@@ -224,11 +239,11 @@ struct Survey {
   importer::ImportTable table;
   std::optional<importer::LoggedTable> logged;
   std::optional<importer::NominalTable> joined;
-  std::string note;  // about the directions; empty: none
+  std::vector<std::string> notes;
 };
 
 void write_survey(const std::string& kind, const SurveyArguments& arguments, const Survey& survey) {
-  const auto& [table, logged, joined, note] = survey;
+  const auto& [table, logged, joined, notes] = survey;
   const std::string text = importer::measurement_csv(table);
   Json result = summary(kind, table);
   if (logged) result["pairing"] = pairing_json(*logged);
@@ -248,10 +263,9 @@ void write_survey(const std::string& kind, const SurveyArguments& arguments, con
   text::write_file(arguments.output.csv_path, text);
   if (logged) print_pairing(human_stream(arguments.output.json_path), *logged, arguments.file);
   if (joined) print_joined(human_stream(arguments.output.json_path), *joined, arguments.nominal);
-  if (!note.empty()) {
-    result["note"] = note;
+  if (!notes.empty()) result["note"] = text::joined(notes, ". ");
+  for (const std::string& note : notes)
     fmt::print(human_stream(arguments.output.json_path), "note: {}\n", note);
-  }
   write_json(arguments.output.json_path, result);
   fmt::print(human_stream(arguments.output.json_path), "{}: {} rows ({} fit, {} check)\n",
              arguments.output.csv_path, table.line.size(), result["n_fit"].get<std::size_t>(),
@@ -262,8 +276,11 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
   Survey survey;
   importer::ImportTable& table = survey.table;
   const std::string text = sheet::utf8_text(text::read_file(arguments.file));
-  const importer::ColumnMap map = map_of(arguments, kind);
-  if (map.columns.empty()) refuse_without_columns(arguments, text, map, kind);
+  importer::ColumnMap map = map_of(arguments, kind);
+  map.format.header = importer::has_header(map);
+  const std::string title = omit_title(text, arguments.file, kind.count("--skip") > 0, map.format);
+  if (!title.empty()) survey.notes.push_back(title);
+  if (map.columns.empty()) refuse_without_columns(arguments, text, map, kind, title);
   table = importer::mapped_table(text, arguments.file, map);
   if (kind_name == "tracker") {
     importer::finish_tracker(table);
@@ -307,10 +324,11 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
         wishes.axes.push_back(axis.name);
     const importer::Guess guess(wishes);
     const auto is_axis = [&](const std::string& name) { return guess.is_axis(name); };
-    survey.note = note_of_order(survey.joined ? importer::add_directions_of_list(table, survey.joined->list,
-                                                                                 survey.joined->rows, is_axis)
-                                              : importer::add_directions_from_order(table, is_axis),
-                                arguments);
+    survey.notes.push_back(note_of_order(
+        survey.joined
+            ? importer::add_directions_of_list(table, survey.joined->list, survey.joined->rows, is_axis)
+            : importer::add_directions_from_order(table, is_axis),
+        arguments));
   }
   if (arguments.check_every > 0) importer::set_roles(table, arguments.check_every);
   write_survey(kind_name, arguments, survey);
@@ -330,7 +348,9 @@ void add_survey_options(CLI::App& kind, const std::shared_ptr<SurveyArguments>& 
   kind.add_option("--separator", arguments->separator, "space: blanks; default: auto")
       ->check(CLI::IsMember(importer::separator_words()));
   kind.add_option("--decimal", arguments->decimal, "decimal sign")->check(CLI::IsMember({"point", "comma"}));
-  kind.add_option("--skip", arguments->skip, "number of lines at the top of the file that are skipped");
+  kind.add_option(
+      "--skip", arguments->skip,
+      "number of lines at the top of the file that are skipped; default: the lines of a title are found");
   kind.add_option(
       "--comment", arguments->comment,
       "mark of a comment: lines that begin with this text are skipped; none: no comments; default: #");

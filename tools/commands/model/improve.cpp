@@ -81,10 +81,15 @@ std::optional<std::uint32_t> cycle_us_of(const model::Measurement& m) {
   return std::nullopt;
 }
 
+constexpr const char* kReflector =
+    "reflector";  // tool point of a simulated loop, instead of that of the machine file
+
 /// Readings of the measurement with the running correction of a machine, or the reason why they are unknown.
 Json replayed(const ModelStep& model_step, const model::Measurement& rows, const model::Machine& from) {
   try {
-    const model::Machine machine = model::parse_machine(model_step.text, model_step.file);
+    const model::Machine in_file = model::parse_machine(model_step.text, model_step.file);
+    const std::optional<model::Machine> at_reflector = exchange::with_tool_point_at_reflector(in_file);
+    const model::Machine& machine = at_reflector ? *at_reflector : in_file;
     const model::Measurement m = model::rebind(rows, from, machine);
     const std::optional<std::uint32_t> cycle_us = cycle_us_of(m);
     if (!cycle_us)
@@ -97,6 +102,7 @@ Json replayed(const ModelStep& model_step, const model::Measurement& rows, const
     const simulate::ReplayResult r = simulate::replay(*image, m, {});
     Json json = {{"label", model_step.label},
                  {"tick_us", *cycle_us},
+                 {"tool_point", at_reflector ? kReflector : "machine file"},
                  {"ticks", r.ticks},
                  {"saturated", r.saturated},
                  {"slewing", r.slewing}};
@@ -375,8 +381,9 @@ class Improver {
         return results::error_or_dash(figure(key + "_um"), figure(key + "_urad"));
       };
       const int rate_Hz = 1'000'000 / r["tick_us"].get<int>();
-      fmt::print(out_, "{} loop, {}: rms of fit rows {} -> {}, rms of check rows {} -> {}\n",
+      fmt::print(out_, "{} loop, {}{}: rms of fit rows {} -> {}, rms of check rows {} -> {}\n",
                  rate_Hz == 1000 ? "1 kHz" : fmt::format("{} Hz", rate_Hz), model_step->label,
+                 r["tool_point"] == kReflector ? ", with the tool point at the reflector" : "",
                  error("rms_before"), error("rms_after"), error("check_rms_before"),
                  error("check_rms_after"));
       if (const std::string more = leaves_more(*model_step, r); !more.empty()) {
@@ -419,28 +426,15 @@ class Improver {
              "the fit estimates the position and the tilt of the touched objects with each model, and "
              "the loop moves the axes only; judge the correction by a measurement with the correction "
              "(compare --before OFF.csv --after ON.csv)";
-    if (const std::string beside = point_beside(model_step); !beside.empty()) return text + beside;
+    if (const std::string arm = left_by_arm(model_step); !arm.empty()) return text + arm;
     return text +
            "the axes of the machine cannot express all errors of the model, such as rotations of the "
            "tool or an error in a direction without an axis; vernier compile states what remains";
   }
 
-  /// Readings of a reflector beside the tool point, or an arm whose joints correct the tool point only.
-  static std::string point_beside(const ModelStep& model_step) {
-    constexpr double kBeside_mm = 1;  // times an angle of 1 mrad: 1 um
+  /// States what an arm, whose joints correct the tool point only, leaves; empty for other machines.
+  static std::string left_by_arm(const ModelStep& model_step) {
     const model::Machine machine = model::parse_machine(model_step.text, model_step.file);
-    for (const model::BaseShift& shift : machine.tool_shifts) {
-      const double away = Eigen::Vector3d(shift.value[0], shift.value[1], shift.value[2]).norm();
-      if (away < kBeside_mm) continue;
-      const Eigen::Vector3d at =
-          exchange::tool_shift_place(machine, shift, exchange::tip_link(model_step.text));
-      return fmt::format(
-          "the readings are those of a reflector {:.4g} mm from the tool point (ToolShift), and the loop "
-          "corrects the tool point of the machine file, not the direction of the tool. State the tool point "
-          "at which the machine works; with the tool point at the reflector (vernier new --tool "
-          "{:.2f},{:.2f},{:.2f}) these rows judge the loop",
-          away, at.x(), at.y(), at.z());
-    }
     if (!kinematics::linear_axes(machine).empty()) return {};
     return "the joints correct the tool point, not the direction of the tool, and near a singular pose they "
            "cannot move the tool point in every direction; vernier compile states the share of such poses";

@@ -226,10 +226,15 @@ void ImportTable::add(const std::string& name, const std::string& unit, const st
   columns.push_back(std::move(column));
 }
 
+bool has_header(const ColumnMap& map) {
+  return map.format.header || std::any_of(map.columns.begin(), map.columns.end(), [](const auto& column) {
+           return !column.source.empty() && !text::parse_count(column.source);
+         });
+}
+
 ImportTable mapped_table(const std::string& text, const std::string& file, const ColumnMap& map) {
   DelimitedFormat format = map.format;
-  for (const MappedColumn& column : map.columns)
-    if (!column.source.empty() && !text::parse_count(column.source)) format.header = true;
+  format.header = has_header(map);
   const DelimitedFile read = parse_delimited(text, file, format);
   ImportTable table{file, {}, read.line};
   for (const MappedColumn& column : map.columns) {

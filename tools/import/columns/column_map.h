@@ -68,6 +68,9 @@ struct ImportTable {
   void add(const std::string& name, const std::string& unit, const std::vector<double>& values);
 };
 
+/// True if the first line of the table has the names of the columns: the map says so, or names a column.
+bool has_header(const ColumnMap& map);
+
 /// Returns the columns of a file that the map names. Every number is written with a decimal point. Columns of
 /// words are not changed. Throws InputError with file, line and word for: a column that does not exist, a
 /// cell that is not a number, an unknown unit, a column name that occurs twice.

@@ -32,6 +32,17 @@ struct DelimitedFile {
 DelimitedFile parse_delimited(const std::string& text, const std::string& file,
                               const DelimitedFormat& format);
 
+/// Lines above a table that are no row of it: a title, the instrument, the date.
+struct TitleLines {
+  std::size_t skip = 0;            // number of lines at the top of the file, for DelimitedFormat::skip
+  std::vector<std::string> texts;  // of these lines, without the empty ones and the comments
+};
+
+/// Finds the lines above the rows of a table, but for the line of its headings: the last one with as many
+/// fields as most lines. Without `format.header` headings have a unit or the name of a coordinate (x, y, z).
+/// Zero lines if most lines have no common number of fields, or if `format.header` finds no headings.
+TitleLines title_lines(const std::string& text, const std::string& file, const DelimitedFormat& format);
+
 /// Returns the names of the separators: comma, semicolon, tab, space, auto.
 std::vector<std::string> separator_words();
 /// Returns the character of a separator from its name. `place`: file and line of the name for the error

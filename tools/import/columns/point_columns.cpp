@@ -143,11 +143,11 @@ bool has_no_meaning(const MappedColumn& column) {
 UnreadCoordinates unread_coordinates(const std::string& text, const std::string& file, const ColumnMap& map) {
   UnreadCoordinates unread;
   DelimitedFormat format = map.format;
+  format.header = has_header(map);
   std::vector<std::string> sources;
   for (const MappedColumn& column : map.columns) {
     if (column.source.empty()) continue;
     if (!has_no_meaning(column)) sources.push_back(column.source);
-    format.header = format.header || !text::parse_count(column.source);
     // Positions, rotations or uncertainties in the list: the other columns are no forgotten coordinates.
     if (!is_coordinate(column.name) && !column.unit.empty()) return {};
   }

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "tools/format/columns.h"
+#include "tools/text/numbers.h"
+#include "tools/text/words.h"
 
 namespace vernier::importer {
 namespace {
@@ -53,6 +55,42 @@ void keep_needed(OpenAxes& open, const std::function<bool(const std::string& axi
   open = std::move(kept);
 }
 
+std::string counted_words(const ListedRows& list, const SheetWishes::Assignment& wish) {
+  const auto counting = list.counting.find(wish.column.name);
+  return counting == list.counting.end() ? wish.heading : in_words({wish.heading, counting->second});
+}
+
+/// Takes signs and addends out of the assignments of the user: a word that is a heading as it stands has
+/// none.
+std::map<std::string, AxisCounting> take_counting(const NominalList& nominal, SheetWords& words) {
+  std::map<std::string, AxisCounting> counting;
+  std::vector<sheet::Heading> headings;
+  for (std::string& word : words.columns) {
+    const std::size_t at = word.find('=');
+    if (at == std::string::npos) continue;
+    const std::vector<CountedHeading> readings = counted_headings(word.substr(at + 1));
+    if (readings.size() < 2) continue;
+    if (headings.empty()) {
+      SheetWords without = words;
+      without.columns.clear();
+      headings = read_as_sheet(nominal.bytes, nominal.file, without).table.headings;
+    }
+    for (const CountedHeading& one : readings) {
+      const auto number = text::parse_count(one.heading);
+      if (!(number && *number >= 1 && *number <= headings.size()) &&
+          std::none_of(headings.begin(), headings.end(), [&](const sheet::Heading& heading) {
+            return heading.text == one.heading || heading.name == one.heading;
+          }))
+        continue;
+      if (!one.counting.is_that_of_machine())
+        counting[text::trimmed(word.substr(0, std::min(at, word.find('['))))] = one.counting;
+      word = word.substr(0, at + 1) + one.heading;
+      break;
+    }
+  }
+  return counting;
+}
+
 /// The words of the user's assignments, but for the axes that `words` assign, and then `words`.
 std::vector<std::string> with_users_words(const ListedRows& list, std::vector<std::string> words) {
   std::vector<std::string> all;
@@ -60,7 +98,7 @@ std::vector<std::string> with_users_words(const ListedRows& list, std::vector<st
     if (std::none_of(words.begin(), words.end(), [&](const std::string& word) {
           return word.starts_with(wish.column.name + "[") || word.starts_with(wish.column.name + "=");
         }))
-      all.push_back(format::heading(wish.column.name, wish.column.unit) + "=" + wish.heading);
+      all.push_back(format::heading(wish.column.name, wish.column.unit) + "=" + counted_words(list, wish));
   all.insert(all.end(), std::make_move_iterator(words.begin()), std::make_move_iterator(words.end()));
   return all;
 }
@@ -83,7 +121,8 @@ ListedRows read_nominal_list(const NominalList& nominal, const model::Machine& m
   words.columns = nominal.columns;
   words.column_option = nominal.option;
   for (const model::Axis& axis : machine.axes) words.axes.push_back(axis.name);
-  ListedRows list{read_as_sheet(nominal.bytes, nominal.file, words), {}, {}, {}};
+  const std::map<std::string, AxisCounting> counting = take_counting(nominal, words);
+  ListedRows list{read_as_sheet(nominal.bytes, nominal.file, words), {}, {}, {}, counting};
   OpenAxes& open = list.open;
   const sheet::Sheet& sheet = list.reading.sheet;
   for (std::size_t row = list.reading.table.first_data; row < sheet.rows.size(); ++row)

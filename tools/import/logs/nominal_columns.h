@@ -2,9 +2,11 @@
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "tools/import/logs/axis_counting.h"
 #include "tools/import/logs/open_axes.h"
 #include "tools/import/reading/sheet_import.h"
 #include "tools/model/machine.h"
@@ -15,8 +17,10 @@ namespace vernier::importer {
 /// A list of nominal positions, as the user gives it.
 struct NominalList {
   std::string bytes, file;
-  std::vector<std::string> columns = {};  // assignments in the words of `import table --column`: "J1[deg]=A1"
-  std::string option = "--column";        // the option of these assignments, for refusals
+  /// Assignments in the words of `import table --column`: "J1[deg]=A1". A joint that the list counts in the
+  /// other direction or from another zero has a sign or an addend: "J3[deg]=-A3+90".
+  std::vector<std::string> columns = {};
+  std::string option = "--column";  // the option of these assignments, for refusals
   /// Returns the call of the user with these assignments, for a refusal. Empty: a refusal has the options
   /// alone.
   std::function<std::string(const std::vector<std::string>& columns)> call = {};
@@ -28,9 +32,10 @@ struct NominalList {
 /// The rows of a list of nominal positions, and the columns of the axes as far as they are clear.
 struct ListedRows {
   SheetReading reading;
-  std::vector<std::size_t> rows;  // rows that are not blank
-  std::string note;               // what was assumed; empty: nothing
-  OpenAxes open;                  // axes whose column or unit the list does not state clearly
+  std::vector<std::size_t> rows;                 // rows that are not blank
+  std::string note;                              // what was assumed; empty: nothing
+  OpenAxes open;                                 // axes whose column or unit the list does not state clearly
+  std::map<std::string, AxisCounting> counting;  // of the axes that the user assigns with a sign or an addend
 
   const std::string& cell(std::size_t i, std::size_t column) const {
     return reading.sheet.rows[rows[i]][column];

@@ -22,14 +22,17 @@ namespace {
 
 constexpr const char* kPointTwice = "the list of nominal positions has this point twice";
 
-/// The number in a cell of the list, with a decimal point.
+/// The number in a cell of the list, with a decimal point, as the machine file counts the axis.
 std::string position_cell(const ListedRows& list, std::size_t i, std::size_t column,
                           const model::Axis& axis) {
   const std::string& cell = list.cell(i, column);
   const auto number = sheet::plain_number(cell, list.reading.sheet.decimal_comma);
   if (!number)
     throw text::InputError(list.place(i), cell, "not a number, for the nominal position of " + axis.name);
-  return *number;
+  const auto counting = list.counting.find(axis.name);
+  if (counting == list.counting.end()) return *number;
+  const double value = *text::parse_number(*number);
+  return text::number_text((counting->second.reversed ? -value : value) + counting->second.zero);
 }
 
 /// The column with the names of the points: the first one that is no axis and has a cell in each row.
@@ -280,6 +283,34 @@ std::string other_unit_of_points(const ImportTable& table, const NominalList& no
   return "";
 }
 
+/// Joints that the list counts in the other direction or from another zero, if all points agree with them: a
+/// sentence with the call that goes on; empty: they do not.
+std::string other_counting(const ImportTable& table, const ImportTable& points, const ListedRows& list,
+                           const NominalList& nominal, const model::Machine& machine, double tolerance_mm) {
+  if (!list.counting.empty()) return "";
+  std::vector<std::string> axes;
+  for (const model::Axis& axis : machine.axes)
+    if (points.find(axis.name) == nullptr) axes.push_back(axis.name);
+  const std::map<std::string, AxisCounting> found =
+      counting_that_agrees(table, machine, axes, place_of(machine), kTolerances * tolerance_mm);
+  if (found.empty()) return "";
+  std::vector<std::string> words, said;
+  for (const std::string& axis : axes) {
+    const std::size_t k = column_of_axis(list, machine.axes[*machine.find_axis(axis)]);
+    CountedHeading heading{list.reading.table.headings[k].text, {}};
+    if (const auto other = found.find(axis); other != found.end()) {
+      heading.counting = other->second;
+      said.push_back(fmt::format("{} = {}", axis, in_words(heading)));
+    }
+    words.push_back(fmt::format("{}[{}]={}", axis, list.reading.columns[k].unit, in_words(heading)));
+  }
+  return fmt::format(
+      "With {} all points agree: the list counts {} in the other direction or from another zero than the "
+      "machine "
+      "file. If this is so, give: {}",
+      text::joined(said, ", "), said.size() == 1 ? "this axis" : "these axes", way_on(nominal, list, words));
+}
+
 /// Compares the points with the nominal tool points: a list in another order would give a false result.
 void check_distances(NominalTable& result, const ImportTable& points, const ListedRows& list,
                      const NominalList& nominal, const model::Machine& machine, double tolerance_mm) {
@@ -289,16 +320,17 @@ void check_distances(NominalTable& result, const ImportTable& points, const List
   result.rms_mm = std::sqrt(off.squaredNorm() / static_cast<double>(off.size()));
   Eigen::Index worst = 0;
   if (off.maxCoeff(&worst) <= kTolerances * tolerance_mm) return;
-  std::string unit = other_unit(table, points, list, nominal, machine, tolerance_mm);
-  if (unit.empty()) unit = other_unit_of_points(table, nominal, machine, tolerance_mm);
+  std::string mend = other_unit(table, points, list, nominal, machine, tolerance_mm);
+  if (mend.empty()) mend = other_unit_of_points(table, nominal, machine, tolerance_mm);
+  if (mend.empty()) mend = other_counting(table, points, list, nominal, machine, tolerance_mm);
   throw text::InputError(
       {table.file, table.line[static_cast<std::size_t>(worst)]}, "",
       fmt::format(
           "this point is {:.3g} mm from its nominal position after the best rigid motion of all points "
           "({}){}",
           off[worst], joined_by(result),
-          !unit.empty()
-              ? ". " + unit
+          !mend.empty()
+              ? ". " + mend
               : fmt::format(": check the order and the names of both lists{}, or give a larger --tolerance",
                             machine.tool_shifts.empty()
                                 ? "; if the points are those of a reflector at an unknown place on the "

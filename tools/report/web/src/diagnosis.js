@@ -9,8 +9,14 @@ const kVerdicts = {
   ambiguous: (best, result) => openWords(result) ?? 'One of several effects: these measurements cannot distinguish them',
   unexplained: () => 'Something is missing, and nothing known explains it',
   instrument: () => 'The measurement is the likelier cause, not the machine',
-  consistent: () => 'Nothing is missing: the residual is noise',
+  consistent: (best, result) =>
+    isNoiseKnown(result)
+      ? 'Nothing is missing: the residual is noise'
+      : 'Nothing to add: these readings do not show whether the residual is noise',
 };
+
+/** True if u or repeats state the noise of the readings. */
+const isNoiseKnown = (result) => Number.isFinite(result.noise_um) || Number.isFinite(result.noise_urad);
 
 /** Of two possible headlines of an ambiguous verdict: the cause is found, and only periods are open; null if the cause is open. */
 function openWords(result) {
@@ -183,6 +189,8 @@ export function next(result) {
     : null;
 }
 
+const kAtReflector = 'The tool point of this loop is the reflector of the readings: a correction acts at the tool point.';
+
 /** The same ladder in the simulated control loop. */
 export function simulated(result) {
   const s = result.simulation;
@@ -194,7 +202,8 @@ export function simulated(result) {
     error('largest with correction', s, 'max_after'),
     { label: 'ticks of 1 ms', value: number(s.ticks, 7) },
   ]);
-  return s.note ? [figures, el('p', { class: 'note' }, printed(s.note))] : figures;
+  const notes = [s.tool_point === 'reflector' ? kAtReflector : null, s.note].filter(Boolean);
+  return notes.length ? [figures, ...notes.map((note) => el('p', { class: 'note' }, printed(note)))] : figures;
 }
 
 /** The residuals before the first and after the last effect. */

@@ -130,7 +130,7 @@ function controlPanel() {
           `${files.length === 1 ? 'One file is' : `${files.length} files are`} written${folder ? ` into the folder ${output} of the project` : ''}. ` +
             `${files.some((name) => /readme/i.test(name)) ? 'README says how the control reads the files. ' : ''}Press a name to save the file.`,
         );
-        store.exported = true;
+        store.exported = store.machine;
         store.leftOut = (state.result.left_out ?? []).map((one) => one.what);
         emit('uploaded');
       }),

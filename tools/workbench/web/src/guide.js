@@ -14,13 +14,24 @@ function askWhatIsMissing() {
     : `The residual of the model (${um(rms_um)}) is not larger than the noise (${um(noise_um)}): ask whether anything is missing.`;
 }
 
+const isUnexplained = () => store.diagnosis?.verdict === 'unexplained';
+
 /** What to do after the diagnosis: to add what it named, or only to fit. */
 function afterDiagnosis() {
   const named = store.diagnosis?.candidates.some((one) => one.accepted) ?? true;
-  return named
-    ? 'Fit, add what was named, and see the error fall on held-out rows.'
+  if (named) return 'Fit, add what was named, and see the error fall on held-out rows.';
+  return isUnexplained()
+    ? 'An error remains that no known effect explains: measure what the diagnosis proposes, or fit the model as it is.'
     : 'No effect was named: fit the model as it is, then see whether it is safe to run.';
 }
+
+/** The correction of a model that is not complete can be safe: the rules do not judge what it leaves. */
+const aboutSafety = () =>
+  (isUnexplained() ? 'The model is not complete: the correction leaves the error that no known effect explains. ' : '') +
+  (store.safety?.refusal || 'The rules of the safety sheet say whether the correction may run.');
+
+/** The files for a control are of the machine that is chosen; a fit after them makes another machine. */
+const isExported = () => store.exported !== '' && store.exported === store.machine;
 
 /** The way from a measurement to a board: [id, name, view, is it done?, what to do]. */
 const kPath = [
@@ -41,18 +52,12 @@ const kPath = [
     askWhatIsMissing,
   ],
   ['fall', 'Watch it fall', 'add', () => store.steps.length > 0, afterDiagnosis],
-  [
-    'safe',
-    'Safe to run?',
-    'board',
-    () => store.safety?.ok === true && store.safety.rules.every((one) => one.value !== null),
-    () => store.safety?.refusal || 'Twelve rules say whether the correction may run.',
-  ],
+  ['safe', 'Safe to run?', 'board', () => store.safety?.ok === true && store.safety.rules.every((one) => one.value !== null), aboutSafety],
   [
     'upload',
     'Upload or export',
     'board',
-    () => store.uploaded || store.exported,
+    () => store.uploaded || isExported(),
     () => 'With a board: compile, upload on trial, watch, confirm. Without a board: Export writes the files for the control.',
   ],
 ];

@@ -47,7 +47,7 @@ export const programWords = (words) =>
     .replace(/: vernier set \S+ --reflector -o NEW\.xml declares it/g, ': press "Declare the reflector"')
     .replace(/declare it in the machine file \(vernier set MACHINE --reflector\)/g, `press "${kReflector}"`)
     .replace(
-      / \(import table --directions from-order\)/g,
+      / \(option --directions from-order of vernier import\)/g,
       ' under Project: press "read differently" beside the file, and choose "from-order" in the field "directions"',
     )
     .replace(

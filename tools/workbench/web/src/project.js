@@ -323,8 +323,8 @@ export function projectView(root) {
   const takeAll = async (files) => {
     error.replaceChildren();
     notes.replaceChildren();
-    // Sheets that nobody has imported yet stay within reach.
-    for (const one of [...box.children]) if (!one.querySelector('.other-sheets')) one.remove();
+    // Sheets that nobody has imported yet stay within reach, and so do the answers given to a file that asks.
+    for (const one of [...box.children]) if (!one.querySelector('.other-sheets, #do-import')) one.remove();
     // Measurements of one drop belong together: two instruments at one machine.
     const before = new Set(store.measurements);
     for (const file of files) {

@@ -21,7 +21,7 @@ export const store = {
   steps: [], // what was tried in this session, in order: {label, machine, rms_um, check_rms_um, noise_um}
   safety: null,
   uploaded: false,
-  exported: false, // files for a control were written
+  exported: '', // the machine of which files for a control were written
   leftOut: [], // what these files do not correct
   diagnosed: new Set(), // measurements that were asked what is missing
   visited: new Set(), // views that were looked at
