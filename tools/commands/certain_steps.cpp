@@ -93,8 +93,13 @@ std::optional<diagnose::LadderStep> step_beside_open(const diagnose::Diagnosis& 
 }
 
 std::string choice_of_cause(const diagnose::Diagnosis& d, const std::string& file) {
-  const auto named =
-      std::find_if(d.causes.begin(), d.causes.end(), [](const auto& cause) { return !cause.add.empty(); });
+  // The most likely cause by the explanation is that of the first step.
+  auto named = std::find_if(d.causes.begin(), d.causes.end(), [&](const auto& cause) {
+    return !cause.add.empty() && d.ladder.size() > 1 && cause.add == d.ladder[1].add;
+  });
+  if (named == d.causes.end())
+    named =
+        std::find_if(d.causes.begin(), d.causes.end(), [](const auto& cause) { return !cause.add.empty(); });
   if (named == d.causes.end()) return "";
   std::string add = named->add, periods;
   if (named->period && named->candidate) {

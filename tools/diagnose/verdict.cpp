@@ -267,12 +267,15 @@ class Decision {
         answer_.ladder.front().chi_square_per_freedom - answer_.ladder.back().chi_square_per_freedom;
     if (square <= limits_.doubtful_uncertainty && square - 1 <= explained) return {};
     return fmt::format(
-        "An error that changes {} remains, and u does not state this error: the residual of the readings is "
-        "{:.2g} u (noise model: {}). Either the instrument drifts, or an error of the machine depends on no "
-        "recorded quantity. No cause is named; {} is only a candidate.{}",
-        quick ? "from row to row" : "slowly", std::sqrt(square),
-        ::vernier::fit::in_words(answer_.noise, answer_.noise_unit), pool_.candidate(*doubtful).spoken,
-        check_rows_in_words(answer_.ladder, accepted_.size()));
+               "An error that changes {} remains, and u does not state this error: the residual of the "
+               "readings is "
+               "{:.2g} u (noise model: {}). Either the instrument drifts, or an error of the machine depends "
+               "on no "
+               "recorded quantity. No cause is named; {} is only a candidate.{}",
+               quick ? "from row to row" : "slowly", std::sqrt(square),
+               ::vernier::fit::in_words(answer_.noise, answer_.noise_unit), pool_.candidate(*doubtful).spoken,
+               check_rows_in_words(answer_.ladder, accepted_.size())) +
+           where_left(answer_.left);
   }
 
   /// An error that steps again and again, to as many steps as a model of the noise may have, and that u does
@@ -300,10 +303,25 @@ class Decision {
   }
 
   /// A warm-up in time beside an effect of a temperature: probably one response to heat that no thermometer
-  /// of the survey follows.
+  /// of the survey follows. A warm-up that is small beside this effect is its lag, or that of the
+  /// thermometer: the effect keeps its name, and the warm-up has none.
   std::string heat_without_thermometer() {
     const std::vector<std::size_t> parts = pieces_of_unrecorded_heat(finder_.evidence(), pool_, accepted_);
-    return parts.empty() ? "" : unrecorded_heat_in_words(names_of(parts));
+    if (parts.empty()) return "";
+    const std::string why = unrecorded_heat_in_words(names_of(parts));
+    const std::size_t warm_up = static_cast<std::size_t>(
+        std::find(accepted_.begin(), accepted_.end(), parts.back()) - accepted_.begin());
+    std::vector<LadderStep>& ladder = answer_.ladder;
+    const auto explained = [&](std::size_t from, std::size_t to) {
+      return ladder[from].chi_square_per_freedom - ladder[to].chi_square_per_freedom;
+    };
+    if (parts.front() != accepted_.front() ||
+        explained(warm_up, warm_up + 1) >= limits_.small_structure * explained(0, 1))
+      return why;
+    ladder[warm_up + 1].certain = false;
+    doubtful_.push_back(parts.back());
+    rest_ = no_certain_cause(names_of({parts.back()}).front() + ".");
+    return {};
   }
 
   /// The error of the check rows must not exceed that of the fit rows, except for their own scatter
@@ -352,8 +370,27 @@ class Decision {
         doubtful.push_back(item);
       }
     if (doubtful.empty()) return {};
+    if (is_most_of_the_error(doubtful)) {
+      for (std::size_t step = 2; step < answer_.ladder.size(); ++step) answer_.ladder[step].certain = false;
+      if (rest_.empty()) rest_ = no_certain_cause(why + ".");
+      doubtful_.insert(doubtful_.end(), doubtful.begin(), doubtful.end());
+      return {};
+    }
     return or_rest("The residual is reduced to the noise, but the cause cannot be named: ", why + ".",
                    doubtful);
+  }
+
+  /// The first effect has no doubt of its own, no other cause, is confirmed by check rows, and explains most
+  /// of what all effects explain: it keeps its name, whatever the doubtful ones are.
+  bool is_most_of_the_error(const std::vector<std::size_t>& doubtful) const {
+    const std::vector<LadderStep>& ladder = answer_.ladder;
+    const std::size_t first = accepted_.front();
+    const auto explained = [&](std::size_t to) {
+      return ladder.front().chi_square_per_freedom - ladder[to].chi_square_per_freedom;
+    };
+    return std::find(doubtful.begin(), doubtful.end(), first) == doubtful.end() && !pool_.is_custom(first) &&
+           ladder[1].of_check_rows && found_.close(0).empty() &&
+           explained(1) >= limits_.most_of_excess * explained(ladder.size() - 1);
   }
 
   /// Returns the reason why no cause is named; or nothing, if the first effect stays a cause whatever the
@@ -366,7 +403,7 @@ class Decision {
     if (!stands(accepted_.front())) return begin + why;
     for (std::size_t i = 0; i < accepted_.size(); ++i)
       if (!stands(accepted_[i])) answer_.ladder[i + 1].certain = false;
-    if (rest_.empty()) rest_ = " The other part of the error has no certain cause: " + why;
+    if (rest_.empty()) rest_ = no_certain_cause(why);
     doubtful_.insert(doubtful_.end(), doubtful.begin(), doubtful.end());
     return {};
   }
@@ -433,6 +470,10 @@ class Decision {
                           other.empty() ? std::string() : pool_.candidate(other.front().item).spoken,
                           other.empty() ? 0 : other.front().distance, answer_.ladder, accepted_.size()) +
            or_a_reflector() + or_a_drift();
+  }
+
+  static std::string no_certain_cause(const std::string& what) {
+    return " The other part of the error has no certain cause: " + what;
   }
 
   /// The same effect of two axes can have the same columns: a lag on a circle.

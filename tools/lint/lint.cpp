@@ -9,6 +9,7 @@
 #include "tools/format/columns.h"
 #include "tools/lint/machine_lint.h"
 #include "tools/lint/measurement_lint.h"
+#include "tools/lint/measurement_meaning.h"
 #include "tools/model/measurement.h"
 #include "tools/sheet/encoding.h"
 #include "tools/sheet/sheet.h"
@@ -65,17 +66,43 @@ void compare_uncertainties(std::vector<LintedFile>& files) {
     }
 }
 
-/// Warns about measurement files without the directions of an axis that moves in them, beside files with
-/// them.
-void compare_directions(const model::Machine& machine, const std::vector<std::string>& bytes,
-                        std::vector<LintedFile>& files) {
-  std::vector<std::size_t> usable;
+/// The measurement files without errors, as a fit of the machine reads them.
+struct UsableFiles {
+  std::vector<std::size_t> at;  // index of each file
   std::vector<model::Measurement> rows;
+};
+
+UsableFiles usable_files(const model::Machine& machine, const std::vector<std::string>& bytes,
+                         const std::vector<LintedFile>& files) {
+  UsableFiles usable;
   for (std::size_t i = 0; i < files.size(); ++i)
     if (files[i].kind == LintedKind::kMeasurement && files[i].usable) {
-      usable.push_back(i);
-      rows.push_back(model::parse_measurement(bytes[i], files[i].file, machine));
+      usable.at.push_back(i);
+      usable.rows.push_back(model::parse_measurement(bytes[i], files[i].file, machine));
     }
+  return usable;
+}
+
+/// An axis that stands in one file and moves in another one is measured: the warning about it is removed.
+void forgive_axes_that_others_move(const model::Machine& machine, const UsableFiles& usable,
+                                   std::vector<LintedFile>& files) {
+  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
+    const bool moves = std::any_of(usable.rows.begin(), usable.rows.end(), [&](const model::Measurement& m) {
+      return m.states.axis[axis].maxCoeff() > m.states.axis[axis].minCoeff();
+    });
+    if (!moves) continue;
+    for (const std::size_t file : usable.at)
+      std::erase_if(files[file].findings, [&](const LintFinding& finding) {
+        return finding.word == machine.axes[axis].name && finding.meaning == kAxisStands;
+      });
+  }
+}
+
+/// Warns about measurement files without the directions of an axis that moves in them, beside files with
+/// them.
+void compare_directions(const model::Machine& machine, const UsableFiles& usable,
+                        std::vector<LintedFile>& files) {
+  const std::vector<model::Measurement>& rows = usable.rows;
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
     const auto has = [&](const model::Measurement& m) { return (m.states.direction[axis] != 0).any(); };
     const auto with = std::find_if(rows.begin(), rows.end(), has);
@@ -85,35 +112,34 @@ void compare_directions(const model::Machine& machine, const std::vector<std::st
       const model::Column& position = rows[k].states.axis[axis];
       if (has(rows[k]) || position.minCoeff() == position.maxCoeff()) continue;
       LintFinding warning;
-      warning.file = files[usable[k]].file;
+      warning.file = files[usable.at[k]].file;
       warning.weight = LintWeight::kWarning;
       warning.word = sense;
       warning.what = fmt::format(
           "no {} in the file, and {} has it: the model predicts no reversal error (backlash) for these rows, "
           "so that they contradict one",
-          sense, text::printable(files[usable[static_cast<std::size_t>(with - rows.begin())]].file));
+          sense, text::printable(files[usable.at[static_cast<std::size_t>(with - rows.begin())]].file));
       warning.meaning =
           "if the rows are in the order of the measurement, import the file again with the directions of the "
           "motion (option --directions from-order of vernier import)";
-      files[usable[k]].findings.push_back(std::move(warning));
+      files[usable.at[k]].findings.push_back(std::move(warning));
     }
   }
 }
 
 /// Warns about rows at one pose whose points cannot both be right.
-void look_for_contradictions(const model::Machine& machine, const std::vector<std::string>& bytes,
-                             std::vector<LintedFile>& files) {
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    if (files[i].kind != LintedKind::kMeasurement || !files[i].usable) continue;
-    const model::Measurement m = model::parse_measurement(bytes[i], files[i].file, machine);
+void look_for_contradictions(const UsableFiles& usable, std::vector<LintedFile>& files) {
+  for (std::size_t k = 0; k < usable.at.size(); ++k) {
+    const model::Measurement& m = usable.rows[k];
     const auto rows = fit::contradicting_rows(m);
     if (rows.empty()) continue;
+    LintedFile& file = files[usable.at[k]];
     LintFinding warning;
-    warning.file = files[i].file;
+    warning.file = file.file;
     warning.line = m.line[rows.front().row];
     warning.weight = LintWeight::kWarning;
     warning.what = fit::contradiction_in_words(m, rows);
-    files[i].findings.push_back(std::move(warning));
+    file.findings.push_back(std::move(warning));
   }
 }
 
@@ -146,8 +172,11 @@ std::vector<LintedFile> lint_contents(const std::vector<std::string>& names,
     });
   }
   if (!machine || !machine->instrument) compare_uncertainties(list);
-  if (machine) compare_directions(*machine, bytes, list);
-  if (machine) look_for_contradictions(*machine, bytes, list);
+  if (!machine) return list;
+  const UsableFiles usable = usable_files(*machine, bytes, list);
+  forgive_axes_that_others_move(*machine, usable, list);
+  compare_directions(*machine, usable, list);
+  look_for_contradictions(usable, list);
   return list;
 }
 

@@ -120,7 +120,7 @@ class Meaning {
       findings_.warn(table_.header_line, column.name,
                      fmt::format("axis {} never moves: it is at {} {} in all rows", column.name,
                                  text::number_text(least), unit),
-                     "the readings do not distinguish the errors of this axis from those of the set-up");
+                     kAxisStands);
     if (machine_ == nullptr) return;
     const model::Axis& axis = machine_->axes[*machine_->find_axis(column.name)];
     if (!axis.min || !axis.max) return;

@@ -13,6 +13,10 @@ namespace vernier::lint {
 void look_at_meaning(const LintTable& table, const std::string& file, const model::Machine* machine,
                      LintFindings& findings);
 
+/// Meaning of the warning about an axis that never moves in a file.
+inline constexpr const char* kAxisStands =
+    "the readings do not distinguish the errors of this axis from those of the set-up";
+
 /// Tests whether readings of a temperature input, from least_degC to most_degC, are plausible in a workshop.
 /// Returns the probable unit of the readings ("degF, or a heated part (bed, spindle)?"); empty if the
 /// readings are plausible.

@@ -199,6 +199,13 @@ ImportTable points_at(const std::vector<std::array<double, 3>>& joints, const mo
   return table;
 }
 
+/// The points with one of them moved along x.
+ImportTable moved(ImportTable table, std::size_t row, double by_mm) {
+  std::string& cell = table.columns.front().cells[row];
+  cell = fmt::format("{:.4f}", std::stod(cell) + by_mm);
+  return table;
+}
+
 TEST(NominalList, AJointThatTheListCountsOtherwiseIsNamed) {
   // The control counts A2 in the other direction, and A3 from 90 deg on. The tool point is beside the plane
   // of the arm: the mirror image of the arm is another one.
@@ -218,11 +225,22 @@ TEST(NominalList, AJointThatTheListCountsOtherwiseIsNamed) {
   EXPECT_THAT(
       [&] { with_nominal(table, nominal, machine, 2); },
       testing::ThrowsMessage<text::InputError>(testing::AllOf(
-          HasSubstr(
-              "With joint_2 = -A2 [deg], joint_3 = A3 [deg]+90 all points agree: the list counts these axes"),
+          HasSubstr("With joint_2 = -A2 [deg], joint_3 = A3 [deg]+90 all points agree within "),
+          HasSubstr("the list counts these axes in the other direction"),
           HasSubstr(
               "give: --nominal-column \"joint_1[deg]=A1 [deg]\" --nominal-column \"joint_2[deg]=-A2 [deg]\" "
               "--nominal-column \"joint_3[deg]=A3 [deg]+90\""))));
+  // A tolerance with which everything agrees is no reason to say nothing.
+  EXPECT_THAT(with_nominal(table, nominal, machine, 100).note, HasSubstr("With joint_2 = -A2 [deg]"));
+  // Errors of the robot above the tolerance: the reading that is ten times better is named all the same.
+  EXPECT_THAT(
+      [&] { with_nominal(moved(table, 1, 12), nominal, machine, 2); },
+      testing::ThrowsMessage<text::InputError>(HasSubstr("With joint_2 = -A2 [deg], joint_3 = A3 [deg]+90")));
+  EXPECT_THAT(
+      [&] {
+        with_nominal(moved(table, 1, 12), {plain, "nom.csv"}, machine, 2);
+      },
+      testing::ThrowsMessage<text::InputError>(HasSubstr("give --tolerance 2.8")));
   nominal.columns = {"joint_1[deg]=A1 [deg]", "joint_2[deg]=-A2 [deg]", "joint_3[deg]=A3 [deg]+90"};
   const std::string right = measurement_csv(with_nominal(table, {plain, "nom.csv"}, machine, 2).table);
   EXPECT_EQ(measurement_csv(with_nominal(table, nominal, machine, 2).table), right);

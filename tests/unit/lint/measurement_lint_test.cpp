@@ -392,6 +392,14 @@ TEST(Lint, AFileWithoutDirectionsBesideAFileWithThemIsAWarning) {
   EXPECT_FALSE(warned(files[1]));
   EXPECT_TRUE(warned(files[2]));
   EXPECT_FALSE(warned(files[3])) << "X stood still";
+  // Another file of the call moves X; alone, the file measures no error of it.
+  const auto stands = [](const LintedFile& file) {
+    return std::any_of(file.findings.begin(), file.findings.end(), [](const LintFinding& one) {
+      return one.word == "X" && one.what.find("never moves") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(stands(files[3]));
+  EXPECT_TRUE(stands(lint_files({axes, still}).back()));
 }
 
 TEST(LintLine, QuotesAShortWordAndNoControlCharacter) {

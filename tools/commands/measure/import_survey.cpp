@@ -54,22 +54,27 @@ importer::ColumnMap map_of(const SurveyArguments& arguments, const CLI::App& kin
 
 /// Omits the lines of a title above the table if the user states no number of lines. Returns a sentence that
 /// quotes them; empty: there are none.
-std::string omit_title(const std::string& text, const std::string& file, bool stated,
-                       importer::DelimitedFormat& format) {
-  if (stated || format.skip > 0) return {};
+std::string omit_title(const std::string& text, const std::string& file, importer::DelimitedFormat& format) {
+  if (format.skip > 0) return {};
   const importer::TitleLines titles = importer::title_lines(text, file, format);
   format.skip = titles.skip;
   if (titles.texts.empty()) return {};
   return fmt::format(
-      "above the table {} that the command does not read: \"{}\"",
+      "Above the table {} that the command does not read: \"{}\"",
       titles.texts.size() == 1 ? "is a line" : fmt::format("are {} lines", titles.texts.size()),
       text::joined(titles.texts, "\", \""));
+}
+
+double nominal_tolerance_mm(const SurveyArguments& arguments, const CLI::App& kind,
+                            const model::Machine& machine) {
+  return kind.count("--tolerance") > 0 ? arguments.log_options.tolerance_mm
+                                       : importer::nominal_tolerance_mm(machine);
 }
 
 /// The assignments that the list of nominal positions needs beside these points; empty: none, or they are not
 /// known.
 std::string nominal_options_to_try(const SurveyArguments& arguments, const std::string& text,
-                                   const importer::ColumnMap& map) {
+                                   const importer::ColumnMap& map, const CLI::App& kind) {
   if (arguments.nominal.empty() || arguments.machine.empty()) return "";
   std::string options;
   try {
@@ -80,8 +85,8 @@ std::string nominal_options_to_try(const SurveyArguments& arguments, const std::
     list.call = [&](const std::vector<std::string>& words) {
       return options = options_of(kNominalColumn, words);
     };
-    importer::with_nominal(table, list, model::read_machine(arguments.machine),
-                           arguments.log_options.tolerance_mm);
+    const model::Machine machine = model::read_machine(arguments.machine);
+    importer::with_nominal(table, list, machine, nominal_tolerance_mm(arguments, kind, machine));
   } catch (const text::InputError&) {
     // The next call says what is wrong in the list.
   }
@@ -97,10 +102,10 @@ void refuse_without_columns(const SurveyArguments& arguments, const std::string&
     throw text::InputError(
         "no column has a meaning: give --map FILE, or --column \"1=x[mm]\" for each column");
   const std::string nominal =
-      nominal_options_to_try(arguments, text, importer::with_point_columns(map, point));
+      nominal_options_to_try(arguments, text, importer::with_point_columns(map, point), kind);
   const bool comma = point.decimal_comma && !map.format.decimal_comma;
   throw text::InputError(fmt::format(
-      "no column has a meaning: give --map FILE. {}, give: {}",
+      "no column has a meaning: give --map FILE. {}{}, give: {}", title.empty() ? "" : title + ". ",
       fmt::format("If {} x, y and z of the points in the units of this call{}",
                   point.by_order ? "the first columns of numbers are" : "the columns of these names are",
                   nominal.empty() ? "" : ", and the columns of the list of nominal positions are the axes"),
@@ -109,8 +114,7 @@ void refuse_without_columns(const SurveyArguments& arguments, const std::string&
                     (comma                         ? " --decimal comma"
                      : kind.count("--decimal") > 0 ? " --decimal " + arguments.decimal
                                                    : "") +
-                    nominal) +
-          (title.empty() ? "" : ". Note: " + title)));
+                    nominal)));
 }
 
 /// Refuses a list of points of which only some coordinates are read: the fit would use a third of the
@@ -278,7 +282,7 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
   const std::string text = sheet::utf8_text(text::read_file(arguments.file));
   importer::ColumnMap map = map_of(arguments, kind);
   map.format.header = importer::has_header(map);
-  const std::string title = omit_title(text, arguments.file, kind.count("--skip") > 0, map.format);
+  const std::string title = omit_title(text, arguments.file, map.format);
   if (!title.empty()) survey.notes.push_back(title);
   if (map.columns.empty()) refuse_without_columns(arguments, text, map, kind, title);
   table = importer::mapped_table(text, arguments.file, map);
@@ -304,8 +308,9 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
   if (!arguments.nominal.empty()) {
     importer::NominalList list = nominal_list(kind, arguments.nominal, arguments.nominal_columns);
     list.call_in_unit = [&](const std::string& unit) { return call_in_unit(arguments, kind, unit); };
-    survey.joined = importer::with_nominal(table, list, model::read_machine(arguments.machine),
-                                           arguments.log_options.tolerance_mm);
+    const model::Machine machine = model::read_machine(arguments.machine);
+    survey.joined =
+        importer::with_nominal(table, list, machine, nominal_tolerance_mm(arguments, kind, machine));
     table = survey.joined->table;
   }
   if (!arguments.machine.empty())
@@ -395,7 +400,7 @@ void add_tracker_kind(CLI::App& kind) {
       ->capture_default_str();
   kind.add_option("--tolerance", log.tolerance_mm,
                   "--log, --nominal: largest permitted difference between measured and nominal distance of "
-                  "two points, mm")
+                  "two points, mm; with --nominal the default is 5 for a robot")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   kind.footer(

@@ -228,11 +228,13 @@ class Improver {
   /// what remains, and the command that adds the most likely cause.
   std::string left_open(const diagnose::Diagnosis& d) const {
     const std::string& file = model_steps_.back().file;
-    const std::optional<double> all = model_steps_.back().rms_um, noise = d.end.noise_um;
-    const double left_um = all && noise ? std::sqrt(std::max(0.0, *all * *all - *noise * *noise)) : 0;
+    // An estimate of the noise from the residual contains this error: what the effects explain does not.
+    const std::optional<double>&all = d.ladder.front().rms_um, &rest = d.ladder.back().rms_um;
+    const double left_um = all && rest ? std::sqrt(std::max(0.0, *all * *all - *rest * *rest)) : 0;
     std::string text =
         fmt::format("The file {} is the machine fitted without these causes, for vernier export.", file);
-    if (left_um > 0) text += fmt::format(" An error of {:.2g} um rms remains uncorrected.", left_um);
+    if (left_um > 0)
+      text += fmt::format(" An error of {:.2g} um rms at these readings remains uncorrected.", left_um);
     const std::string choice = choice_of_cause(d, file);
     if (choice.empty()) return text;
     text += " " + choice;

@@ -114,14 +114,15 @@ VectorXd heights_of(const model::Machine& machine, const ThreeAxes& axes, const 
 }
 
 /// Fits skew and steps, without the parts that the last fit did not measure. `by_all`: the whole standard
-/// uncertainty counts.
+/// uncertainty counts beside that of the parameters that no reading determines.
 void fit_straight_parts(PrinterCorrection& correction, const PrinterFeatures& features,
                         const model::Machine& machine, const ThreeAxes& axes, const model::States& at,
                         bool by_all) {
   constexpr std::size_t kPositions = 7;  // of each axis
   const Matrix3Xd points = grid(axes, {kPositions, kPositions, kPositions});
   StraightParts parts = straight_parts(points, needed(machine, axes, points, at));
-  const StraightParts std = std_of_parts(machine, axes, at, by_all);
+  const StraightParts open = std_of_parts(machine, axes, at, false);
+  const StraightParts std = by_all ? std_of_parts(machine, axes, at, true) : open;
   // A part that is 0, and that no parameter of the last fit changes, was not measured either; without a fit
   // none of them was.
   const StraightParts seen = std_of_parts(machine, axes, at, true);
@@ -132,7 +133,10 @@ void fit_straight_parts(PrinterCorrection& correction, const PrinterFeatures& fe
     const auto i = static_cast<Index>(k);
     if (!(k < 3 ? features.skew : features.steps)) continue;
     const bool absent = std::abs(parts[i]) < kZero && seen[i] < kZero;
-    if (std[i] <= kMostShare * std::abs(parts[i]) && !absent) continue;
+    // What no reading determines takes its value nearest zero: the part is too small by such a share.
+    constexpr double kMostOpen = 0.1;
+    if (open[i] <= kMostOpen * std::abs(parts[i]) && std[i] <= kMostShare * std::abs(parts[i]) && !absent)
+      continue;
     const double travel = axes.high[along[k]] - axes.low[along[k]];
     correction.unmeasured.push_back(
         {names[k], parts[i], std[i], absent ? 0 : 1000 * travel * std::max(std::abs(parts[i]), std[i])});

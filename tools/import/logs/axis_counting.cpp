@@ -31,57 +31,73 @@ ImportTable counted(const ImportTable& table, const Countings& countings) {
   return other;
 }
 
-/// Tries countings from few changed joints to many, and remembers those that agree.
+/// Tries all countings.
 class Search {
  public:
   Search(const ImportTable& table, const model::Machine& machine, const std::vector<std::string>& axes,
-         ToolPlace place, double limit_mm)
-      : table_(table), machine_(machine), axes_(axes), place_(place), limit_mm_(limit_mm) {}
+         ToolPlace place)
+      : table_(table), machine_(machine), axes_(axes), place_(place) {}
 
-  Countings run() {
-    for (std::size_t zeros = 0; zeros < 2; ++zeros)
-      for (std::size_t reversed = zeros == 0 ? 1 : 0; reversed <= axes_.size(); ++reversed) {
-        std::vector<Countings> agreeing;
-        for (std::uint32_t signs = 0; signs < 1U << axes_.size(); ++signs)
-          if (static_cast<std::size_t>(std::popcount(signs)) == reversed)
-            try_signs(signs, zeros > 0, agreeing);
-        if (!agreeing.empty()) return agreeing.size() == 1 ? agreeing.front() : Countings{};
-      }
-    return {};
+  /// Countings with at most `most_reversed` other signs, and other zeros of `zeros` joints.
+  std::vector<OtherCounting> run(std::size_t zeros, std::size_t most_reversed) const {
+    std::vector<OtherCounting> tried;
+    for (std::uint32_t signs = zeros == 0 ? 1 : 0; signs < 1U << axes_.size(); ++signs) {
+      if (static_cast<std::size_t>(std::popcount(signs)) > most_reversed) continue;
+      Countings countings;
+      for (std::size_t a = 0; a < axes_.size(); ++a)
+        if ((signs >> a & 1U) != 0) countings[axes_[a]].reversed = true;
+      add_zeros(countings, 0, zeros, tried);
+    }
+    return tried;
   }
 
  private:
-  void try_signs(std::uint32_t signs, bool with_zero, std::vector<Countings>& agreeing) const {
-    Countings countings;
-    for (std::size_t a = 0; a < axes_.size(); ++a) countings[axes_[a]].reversed = (signs >> a & 1U) != 0;
-    if (!with_zero) {
-      if (agrees(countings)) agreeing.push_back(countings);
-      return;
-    }
+  /// Adds the countings with other zeros of `zeros` of the joints from `first` on.
+  void add_zeros(const Countings& countings, std::size_t first, std::size_t zeros,
+                 std::vector<OtherCounting>& tried) const {
     constexpr double kZeros_deg[] = {90, -90, 180};
-    for (const std::string& axis : axes_) {
-      const ImportTable::Column* const column = table_.find(axis);
-      const auto unit = format::find_unit(column->unit);
+    if (zeros == 0) return add(countings, tried);
+    for (std::size_t a = first; a < axes_.size(); ++a) {
+      const auto unit = format::find_unit(table_.find(axes_[a])->unit);
       if (!unit || unit->dimension != format::Dimension::kAngle) continue;
       for (const double zero_deg : kZeros_deg) {
         Countings shifted = countings;
-        shifted[axis].zero = zero_deg / unit->factor;
-        if (agrees(shifted)) agreeing.push_back(shifted);
+        shifted[axes_[a]].zero = zero_deg / unit->factor;
+        add_zeros(shifted, a + 1, zeros - 1, tried);
       }
     }
   }
 
-  bool agrees(const Countings& countings) const {
+  void add(const Countings& countings, std::vector<OtherCounting>& tried) const {
     const Eigen::VectorXd off = distances_from_nominal(counted(table_, countings), machine_, place_);
-    return off.size() > 0 && off.maxCoeff() <= limit_mm_;
+    if (off.size() > 0) tried.push_back({countings, off.maxCoeff()});
   }
 
   const ImportTable& table_;
   const model::Machine& machine_;
   const std::vector<std::string>& axes_;
   ToolPlace place_;
-  double limit_mm_;
 };
+
+/// The counting of fewest axes among those that agree about as well as the best one.
+std::optional<OtherCounting> clearest(const std::vector<OtherCounting>& tried, double limit_mm,
+                                      double given_mm) {
+  constexpr double kBetter =
+      10;  // times, than as given: a wrong sign is hundreds of mm, an error of a robot a few
+  constexpr double kAlike = 2;  // times the best distance
+  double best_mm = given_mm;
+  for (const OtherCounting& one : tried) best_mm = std::min(best_mm, one.farthest_mm);
+  if (best_mm > std::max(limit_mm, given_mm / kBetter)) return std::nullopt;
+  const double alike_mm = std::max(limit_mm, kAlike * best_mm);
+  const OtherCounting* found = nullptr;
+  std::size_t equal = 0;
+  for (const OtherCounting& one : tried) {
+    if (one.farthest_mm > alike_mm || (found != nullptr && one.axes.size() > found->axes.size())) continue;
+    equal = found != nullptr && one.axes.size() == found->axes.size() ? equal + 1 : 1;
+    found = &one;
+  }
+  return equal == 1 ? std::optional(*found) : std::nullopt;
+}
 
 }  // namespace
 
@@ -106,14 +122,17 @@ std::string in_words(const CountedHeading& heading) {
                      counting.zero == 0 ? "" : fmt::format("{:+.10g}", counting.zero));
 }
 
-std::map<std::string, AxisCounting> counting_that_agrees(const ImportTable& table,
-                                                         const model::Machine& machine,
-                                                         const std::vector<std::string>& axes,
-                                                         ToolPlace place, double limit_mm) {
-  if (axes.empty() || axes.size() > kMostReversed) return {};
-  Countings found = Search(table, machine, axes, place, limit_mm).run();
-  std::erase_if(found, [](const auto& one) { return one.second.is_that_of_machine(); });
-  return found;
+std::optional<OtherCounting> counting_that_agrees(const ImportTable& table, const model::Machine& machine,
+                                                  const std::vector<std::string>& axes, ToolPlace place,
+                                                  double limit_mm, double given_mm) {
+  if (axes.empty() || axes.size() > kMostReversed) return std::nullopt;
+  constexpr std::size_t kZeros = 2, kFewReversed = 2;  // beside two zeros, so that the search takes a second
+  const Search search(table, machine, axes, place);
+  for (std::size_t zeros = 0; zeros <= kZeros; ++zeros)
+    if (const auto found =
+            clearest(search.run(zeros, zeros < kZeros ? axes.size() : kFewReversed), limit_mm, given_mm))
+      return found;
+  return std::nullopt;
 }
 
 }  // namespace vernier::importer

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,13 +31,18 @@ std::vector<CountedHeading> counted_headings(const std::string& words);
 /// Returns the words of a heading with a sign and an addend.
 std::string in_words(const CountedHeading& heading);
 
-/// Finds joints that a list counts in the other direction, and at most one joint whose zero is another by 90
-/// or 180 deg: with them all points agree within `limit_mm` with the nominal machine. `table`: with a
-/// position of every axis in each row. `axes`: names of the axes that may be counted otherwise. Empty: no
-/// such counting agrees, or two with the same number of joints do.
-std::map<std::string, AxisCounting> counting_that_agrees(const ImportTable& table,
-                                                         const model::Machine& machine,
-                                                         const std::vector<std::string>& axes,
-                                                         ToolPlace place, double limit_mm);
+/// Another way to count the positions of a list.
+struct OtherCounting {
+  std::map<std::string, AxisCounting> axes;  // those that are counted otherwise
+  double farthest_mm = 0;                    // largest distance of a point from its nominal position with it
+};
+/// Finds joints that a list counts in the other direction, and at most two joints whose zeros are others by
+/// 90 or 180 deg, with which the points agree with the nominal machine: within `limit_mm`, or ten times
+/// better than as given (`given_mm`). The machine can have errors above the limit. `table`: with a position
+/// of every axis in each row. `axes`: names of the axes that may be counted otherwise. No value: no such
+/// counting agrees, or two with the same number of joints do.
+std::optional<OtherCounting> counting_that_agrees(const ImportTable& table, const model::Machine& machine,
+                                                  const std::vector<std::string>& axes, ToolPlace place,
+                                                  double limit_mm, double given_mm);
 
 }  // namespace vernier::importer

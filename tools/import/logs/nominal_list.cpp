@@ -283,62 +283,98 @@ std::string other_unit_of_points(const ImportTable& table, const NominalList& no
   return "";
 }
 
-/// Joints that the list counts in the other direction or from another zero, if all points agree with them: a
-/// sentence with the call that goes on; empty: they do not.
+/// Joints that the list counts in the other direction or from another zero, if the points agree with them: a
+/// sentence with the call that goes on; empty: they do not. `given_mm`: the largest distance as given.
 std::string other_counting(const ImportTable& table, const ImportTable& points, const ListedRows& list,
-                           const NominalList& nominal, const model::Machine& machine, double tolerance_mm) {
+                           const NominalList& nominal, const model::Machine& machine, double limit_mm,
+                           double given_mm) {
   if (!list.counting.empty()) return "";
   std::vector<std::string> axes;
   for (const model::Axis& axis : machine.axes)
     if (points.find(axis.name) == nullptr) axes.push_back(axis.name);
-  const std::map<std::string, AxisCounting> found =
-      counting_that_agrees(table, machine, axes, place_of(machine), kTolerances * tolerance_mm);
-  if (found.empty()) return "";
+  const std::optional<OtherCounting> other =
+      counting_that_agrees(table, machine, axes, place_of(machine), limit_mm, given_mm);
+  if (!other) return "";
   std::vector<std::string> words, said;
   for (const std::string& axis : axes) {
     const std::size_t k = column_of_axis(list, machine.axes[*machine.find_axis(axis)]);
     CountedHeading heading{list.reading.table.headings[k].text, {}};
-    if (const auto other = found.find(axis); other != found.end()) {
-      heading.counting = other->second;
+    if (const auto one = other->axes.find(axis); one != other->axes.end()) {
+      heading.counting = one->second;
       said.push_back(fmt::format("{} = {}", axis, in_words(heading)));
     }
     words.push_back(fmt::format("{}[{}]={}", axis, list.reading.columns[k].unit, in_words(heading)));
   }
   return fmt::format(
-      "With {} all points agree: the list counts {} in the other direction or from another zero than the "
-      "machine "
-      "file. If this is so, give: {}",
-      text::joined(said, ", "), said.size() == 1 ? "this axis" : "these axes", way_on(nominal, list, words));
+      "With {} all points agree within {:.3g} mm (as given: {:.3g} mm): the list counts {} in the other "
+      "direction or from another zero than the machine file. If this is so, give: {}",
+      text::joined(said, ", "), other->farthest_mm, given_mm, said.size() == 1 ? "this axis" : "these axes",
+      way_on(nominal, list, words));
+}
+
+/// What to look at if no other reading of the files makes the points agree.
+std::string what_to_check(const model::Machine& machine, bool without_names, double off_mm,
+                          double tolerance_mm) {
+  constexpr double kMostOfAMachine =
+      5;  // times the permitted distance: a robot of 6 to 30 mm before its calibration
+  std::string text = ": check the order and the names of both lists";
+  const bool turns = std::any_of(machine.axes.begin(), machine.axes.end(),
+                                 [](const model::Axis& axis) { return axis.rotary; });
+  if (machine.tool_shifts.empty() && turns)
+    text +=
+        "; if the points are those of a reflector at an unknown place on the tool, declare it in the machine "
+        "file "
+        "(vernier set MACHINE --reflector)";
+  if (without_names)
+    text +=
+        "; row n of the list was taken as point n: if the points have another order, both files need a "
+        "column with "
+        "the names of the points";
+  if (off_mm <= kMostOfAMachine * kTolerances * tolerance_mm)
+    text += fmt::format("; if the machine can have errors of this size, give --tolerance {:.2g}",
+                        std::ceil(10 * off_mm / kTolerances + 1) / 10);
+  return text;
 }
 
 /// Compares the points with the nominal tool points: a list in another order would give a false result.
 void check_distances(NominalTable& result, const ImportTable& points, const ListedRows& list,
                      const NominalList& nominal, const model::Machine& machine, double tolerance_mm) {
+  constexpr double kLarge_mm = 20;  // more than a machine is wrong by, whatever tolerance the user states
   const ImportTable& table = result.table;
   const Eigen::VectorXd off = distances(table, machine);
   if (off.size() == 0) return;
   result.rms_mm = std::sqrt(off.squaredNorm() / static_cast<double>(off.size()));
   Eigen::Index worst = 0;
-  if (off.maxCoeff(&worst) <= kTolerances * tolerance_mm) return;
+  const double limit_mm = kTolerances * tolerance_mm, off_mm = off.maxCoeff(&worst);
+  if (off_mm <= limit_mm) {
+    if (off_mm > kLarge_mm)
+      if (const std::string other = other_counting(table, points, list, nominal, machine, kLarge_mm, off_mm);
+          !other.empty())
+        result.note += (result.note.empty() ? "" : ". ") + other;
+    return;
+  }
   std::string mend = other_unit(table, points, list, nominal, machine, tolerance_mm);
   if (mend.empty()) mend = other_unit_of_points(table, nominal, machine, tolerance_mm);
-  if (mend.empty()) mend = other_counting(table, points, list, nominal, machine, tolerance_mm);
+  if (mend.empty()) mend = other_counting(table, points, list, nominal, machine, limit_mm, off_mm);
   throw text::InputError(
       {table.file, table.line[static_cast<std::size_t>(worst)]}, "",
       fmt::format(
           "this point is {:.3g} mm from its nominal position after the best rigid motion of all points "
           "({}){}",
-          off[worst], joined_by(result),
-          !mend.empty()
-              ? ". " + mend
-              : fmt::format(": check the order and the names of both lists{}, or give a larger --tolerance",
-                            machine.tool_shifts.empty()
-                                ? "; if the points are those of a reflector at an unknown place on the "
-                                  "tool, declare it in the machine file (vernier set MACHINE --reflector)"
-                                : "")));
+          off_mm, joined_by(result),
+          mend.empty()
+              ? what_to_check(machine, result.names.empty() && !result.by_distances, off_mm, tolerance_mm)
+              : ". " + mend));
 }
 
 }  // namespace
+
+double nominal_tolerance_mm(const model::Machine& machine) {
+  constexpr double kOfMachine_mm = 2, kOfRobot_mm = 5;
+  const bool robot = std::all_of(machine.axes.begin(), machine.axes.end(),
+                                 [](const model::Axis& axis) { return axis.rotary; });
+  return robot ? kOfRobot_mm : kOfMachine_mm;
+}
 
 std::string joined_by(const NominalTable& table) {
   if (!table.names.empty()) return "joined by the names in " + table.names;

@@ -25,6 +25,10 @@ struct NominalTable {
                                  // rigid motion; nullopt: too few points, or no x y z
 };
 
+/// Returns the tolerance of the points for with_nominal(), mm: 2; 5 for a machine whose axes all turn. The
+/// errors of a robot before its calibration are a few mm.
+double nominal_tolerance_mm(const model::Machine& machine);
+
 /// Returns how the points were joined with the list: "joined by row number".
 std::string joined_by(const NominalTable& table);
 

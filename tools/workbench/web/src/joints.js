@@ -7,6 +7,9 @@ import { store } from './store.js';
 export const kNames =
   'The columns may have other names: a1 or joint_1 instead of the names in the machine file. The program compares the names and numbers, and writes a new measurement file.';
 
+const kNoAxes =
+  'No column is the position of an axis. If these are points that an instrument measured, choose "points of a laser tracker" in the field "read as".';
+
 const kByHand =
   'The program does not find the columns of the axes. Press "Choose the columns by hand": there, write the name of an axis in the place of the name of its column.';
 
@@ -51,8 +54,9 @@ export function byMachine(file, { error, byHand = null, done, prefix = '' }) {
     });
   /** The program is not sure which column is which axis: the user confirms its assignment. */
   const doubt = (columns) => {
-    if (!columns.length) {
-      error.replaceChildren(el('p', { class: 'error', role: 'alert' }, kByHand));
+    const readings = columns.some((one) => /^[xyz]\W/.test(one));
+    if (!columns.length || readings) {
+      error.replaceChildren(el('p', { class: 'error', role: 'alert' }, readings ? kNoAxes : kByHand));
       return;
     }
     error.replaceChildren();

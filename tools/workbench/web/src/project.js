@@ -316,6 +316,9 @@ export function projectView(root) {
   const boxOf = (name) => {
     const old = [...box.children].find((one) => one.dataset.of === name);
     const own = el('div', { 'data-of': name });
+    own.addEventListener('change', () => {
+      own.dataset.typed = 'yes';
+    });
     old?.remove();
     box.prepend(own);
     return own;
@@ -323,8 +326,9 @@ export function projectView(root) {
   const takeAll = async (files) => {
     error.replaceChildren();
     notes.replaceChildren();
-    // Sheets that nobody has imported yet stay within reach, and so do the answers given to a file that asks.
-    for (const one of [...box.children]) if (!one.querySelector('.other-sheets, #do-import')) one.remove();
+    // Sheets that nobody has imported yet stay within reach, and so do the answers that were typed for a file that asks.
+    for (const one of [...box.children])
+      if (!one.querySelector('.other-sheets') && !(one.dataset.typed && one.querySelector('#do-import'))) one.remove();
     // Measurements of one drop belong together: two instruments at one machine.
     const before = new Set(store.measurements);
     for (const file of files) {
