@@ -364,7 +364,7 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
   std::vector<model::FitRecord::Finding> list;
   if (!result.converged) list.push_back({"not-converged", 1, "The fit did not converge."});
   if (result.size && !result.size->known)
-    list.push_back({"size-unknown", result.size->relative_std, size_sentence(*result.size)});
+    list.push_back({kSizeUnknown, result.size->relative_std, size_sentence(*result.size)});
   if (!result.absurd.empty()) list.push_back({"absurd", 1, result.absurd});
   if (const std::string far = far_from_nominal(result.machine, result.parameters, m, result.reach_mm);
       !far.empty())

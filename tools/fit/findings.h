@@ -41,6 +41,9 @@ std::vector<model::FitRecord::Finding> findings_of(const FitResult& result, cons
 /// Code of the finding that a bow of the touched plane counts as an error of the axes.
 inline constexpr const char* kFlatnessAssumed = "flatness-assumed";
 
+/// Code of the finding that the known lengths do not determine the size of the machine.
+inline constexpr const char* kSizeUnknown = "size-unknown";
+
 /// Code of the finding that an axis had one position in all fit rows.
 inline constexpr const char* kStoodStill = "stood-still";
 

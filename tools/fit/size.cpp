@@ -260,7 +260,8 @@ std::string size_sentence(const SizeOfMachine& size) {
   if (!size.known)
     return std::string(size.has_length
                            ? "The known lengths do not determine the size of the machine: it stays "
-                             "at nominal. Measure a longer length, or its ends from more poses."
+                             "at nominal. Measure a longer length, or its ends from more poses; if the "
+                             "readings of the lengths have no u, state it."
                            : "No reading has a known length: the size of the machine stays at "
                              "nominal. Give the distance of two points, or an artefact with a known radius "
                              "or known positions.");

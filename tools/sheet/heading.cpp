@@ -507,6 +507,13 @@ Heading parse_heading(std::string_view cell) {
 
 namespace {
 
+/// Index of the first row of data; the number of rows if there is none.
+std::size_t first_row_of_data(const Sheet& sheet) {
+  std::size_t first = 0;
+  while (first < sheet.rows.size() && !is_row_of_data(sheet, first)) ++first;
+  return first;
+}
+
 /// True for a row with one text of several words above rows with several cells: a title, or headings with
 /// another separator.
 bool is_title_alone(const Sheet& sheet, std::size_t row, std::size_t first) {
@@ -523,10 +530,25 @@ bool is_title_alone(const Sheet& sheet, std::size_t row, std::size_t first) {
 
 }  // namespace
 
+void move_units_below_headings(Sheet& sheet) {
+  constexpr std::size_t kLines = 3;  // names, units, runs
+  const std::size_t first = first_row_of_data(sheet);
+  if (first < kLines || first == sheet.rows.size()) return;
+  const std::vector<std::string>&names = sheet.rows[first - kLines], &units = sheet.rows[first - 2],
+        &runs = sheet.rows[first - 1];
+  if (!is_units(units) || is_units(runs) ||
+      std::count_if(names.begin(), names.end(), [](const auto& cell) { return !cell.empty(); }) < 2)
+    return;
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    if (!runs[k].empty() && units[k].empty()) return;
+  std::swap(sheet.rows[first - 2], sheet.rows[first - 1]);
+  std::swap(sheet.line[first - 2], sheet.line[first - 1]);
+  if (!sheet.written.empty()) std::swap(sheet.written[first - 2], sheet.written[first - 1]);
+}
+
 SheetTable parts_of_sheet(const Sheet& sheet) {
   SheetTable table;
-  std::size_t first = 0;
-  while (first < sheet.rows.size() && !is_row_of_data(sheet, first)) ++first;
+  const std::size_t first = first_row_of_data(sheet);
   if (first == sheet.rows.size()) refuse_without_numbers(sheet);
   table.first_data = first;
   std::size_t heading = first;

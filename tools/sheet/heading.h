@@ -47,6 +47,10 @@ bool is_line_of_units(const Sheet& sheet, std::size_t row);
 /// Dates count neither as numbers nor as words. A row above a line of units is a row of headings.
 bool is_row_of_data(const Sheet& sheet, std::size_t row);
 
+/// Moves a line of units between two lines of headings (names, units, runs) below them, where
+/// parts_of_sheet() reads it. Other sheets do not change.
+void move_units_below_headings(Sheet& sheet);
+
 /// Finds the parts of a sheet. The first row with mostly numbers is the first row of data. Throws InputError
 /// if no row has mostly numbers.
 SheetTable parts_of_sheet(const Sheet& sheet);

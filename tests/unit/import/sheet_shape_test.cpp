@@ -32,6 +32,18 @@ TEST(SheetShape, SignsOfAMeanAreComputedRowsAlsoInAColumnThatIsLeftOut) {
         << label;
 }
 
+TEST(SheetShape, UnitsBetweenTwoLinesOfHeadingsAreReadAsBelowThem) {
+  // As a protocol by VDI 3441: names over several columns, units, runs with arrows.
+  const std::string table =
+      "Sollposition "
+      "X;Abweichung;;;;Mittelwert;\nmm;um;um;um;um;um;um\n;1\u2191;1\u2193;2\u2191;2\u2193;x\u2191;x\u2193\n"
+      "0;1;6;2;7;1,5;6,5\n50;2;8;3;9;2,5;8,5\n";
+  const std::string said = read(table);
+  EXPECT_THAT(said, testing::StartsWith("X[mm],dirX,run,x[mm]\n0,1,1,0.001\n50,1,1,50.002\n50,-1,1,50.008\n"
+                                        "0,-1,1,0.006\n0,1,2,0.002\n"));
+  EXPECT_THAT(said, Not(HasSubstr("does not use")));
+}
+
 TEST(SheetShape, ReadingsOfEachDirectionBelongToItsPositions) {
   const std::string pairs = "X Soll hin [mm];Abw. X hin [um];X Soll rück [mm];Abw. X rück [um]\n";
   EXPECT_THAT(read(pairs + "0;1;100;4\n50;2;50;5\n100;3;0;6\n"),

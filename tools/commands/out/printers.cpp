@@ -198,13 +198,15 @@ Json errors_json(const exchange::PrinterErrors& errors) {
             {"rms_after_um", errors.rms_after_um}}}};
 }
 
-/// True if the touches of the last fit do not distinguish the bed from the axes.
-bool is_bed_or_axes(const model::Machine& machine) {
+bool has_finding(const model::Machine& machine, const char* code) {
   if (!machine.fitted) return false;
   const auto& findings = machine.fitted->findings;
   return std::any_of(findings.begin(), findings.end(),
-                     [](const auto& finding) { return finding.code == fit::kFlatnessAssumed; });
+                     [&](const auto& finding) { return finding.code == code; });
 }
+
+/// True if the touches of the last fit do not distinguish the bed from the axes.
+bool is_bed_or_axes(const model::Machine& machine) { return has_finding(machine, fit::kFlatnessAssumed); }
 
 void require_touches(const exchange::Bed& bed, const PrinterArguments& arguments) {
   if (arguments.touches.empty())
@@ -424,6 +426,18 @@ exchange::PrinterCorrection only_heights(exchange::PrinterCorrection correction)
   return correction;
 }
 
+/// The refusal of a fit that left squareness and scales open begins with the fit that measures them: the
+/// other parameters that such a fit holds are more than those that the sheet names.
+void require_safe_printer(const model::Machine& machine, const ExchangeArguments& common) {
+  try {
+    require_safe(machine, common, true);
+  } catch (const text::LimitNotMet& refusal) {
+    const std::string remedy = remedy_of_unmeasured(fit_of_square(machine));
+    if (remedy.empty()) throw;
+    throw text::LimitNotMet(fmt::format("{}. Without distances of a square: {}", remedy, refusal.what()));
+  }
+}
+
 void export_printer(const PrinterArguments& arguments, Firmware firmware, const char* name) {
   const ExchangeArguments& common = arguments.common;
   const exchange::PresentSetting present = present_of(arguments);
@@ -434,7 +448,8 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
   const PrinterModel model = model_of(arguments, features);
   const auto& [fitted, follows_touches, machine, bed, at] = model;
   const exchange::ThreeAxes axes = exchange::three_axes(fitted);
-  if (!follows_touches) require_safe(fitted, common, true);
+  features.size_known = !has_finding(fitted, fit::kSizeUnknown);
+  if (!follows_touches) require_safe_printer(fitted, common);
   const bool unmeasured_heights = features.mesh && !bed && !exchange::heights_are_measured(fitted, axes, at);
   if (unmeasured_heights) features.mesh = false;
   exchange::PrinterCorrection correction = exchange::printer_correction(

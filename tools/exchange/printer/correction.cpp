@@ -135,7 +135,9 @@ void fit_straight_parts(PrinterCorrection& correction, const PrinterFeatures& fe
     const bool absent = std::abs(parts[i]) < kZero && seen[i] < kZero;
     // What no reading determines takes its value nearest zero: the part is too small by such a share.
     constexpr double kMostOpen = 0.1;
-    if (open[i] <= kMostOpen * std::abs(parts[i]) && std[i] <= kMostShare * std::abs(parts[i]) && !absent)
+    const bool without_size = k >= 3 && !features.size_known;
+    if (open[i] <= kMostOpen * std::abs(parts[i]) && std[i] <= kMostShare * std::abs(parts[i]) && !absent &&
+        !without_size)
       continue;
     const double travel = axes.high[along[k]] - axes.low[along[k]];
     correction.unmeasured.push_back(

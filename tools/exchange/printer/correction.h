@@ -64,6 +64,7 @@ struct PrinterFeatures {
   bool skew = true, mesh = true;
   bool steps = false;               // true: the user states the present steps per mm
   bool lost_motion = false;         // true: the firmware has a command for the backlash of an axis
+  bool size_known = true;           // false: the last fit says that no known length determines the size
   std::vector<std::size_t> points;  // numbers of mesh points per axis that are tested, in increasing order
 };
 

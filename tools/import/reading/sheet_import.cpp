@@ -407,6 +407,7 @@ SheetReading read_as_sheet(const std::string& bytes, const std::string& file, co
   sheet::keep_table(result.sheet, result.wishes.format.table);
   const std::vector<RunLine> run_lines = take_run_lines(result.sheet);
   take_sentences_below_headings(result.sheet);
+  sheet::move_units_below_headings(result.sheet);
   result.table = sheet::parts_of_sheet(result.sheet);
   add_run_lines(result.sheet, result.table, run_lines);
   note_title_alone(result.sheet, result.table);

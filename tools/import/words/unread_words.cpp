@@ -159,6 +159,8 @@ std::vector<std::string> unread_words(std::string_view heading, const HeadingPla
   for (const std::string_view index : {"_ij", "_i", "_j"})
     text::replace_all(text, index, "");    // of ISO 230-2
   text::replace_all(text, "\u00b7", " ");  // two bytes: as separators they would cut other letters
+  for (const std::string arrow : {"\u2191", "\u2193", "\u2190", "\u2192"})
+    text::replace_all(text, arrow, " " + arrow + " ");  // "1\u2191": a run and a direction
   std::vector<std::string> words;
   std::string alone;  // a sign alone before this word: "+ 10"
   const SignSaid sign = sign_said(heading, SignPlace::kHeading);

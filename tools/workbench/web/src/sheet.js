@@ -27,7 +27,9 @@ const kPointName = /^(name|point|punkt|punktname|id)$/i;
 /** The columns of points without headings, in the order x, y, z; before them their names, if the first column has words. */
 function pointsWithoutHeadings(preview) {
   const isNumber = (cell) => cell.trim() !== '' && Number.isFinite(Number(cell.trim().replace(',', '.')));
-  const first = preview.rows.every((row) => isNumber(row[0])) ? 0 : 1;
+  // Names that are numbers count the points.
+  const counts = preview.rows.length > 1 && preview.rows.every((row, i) => Number(row[0]) === Number(preview.rows[0][0]) + i);
+  const first = preview.rows.every((row) => isNumber(row[0])) && !(preview.columns.length === 4 && counts) ? 0 : 1;
   const right = preview.columns.length === first + 3 && preview.rows.every((row) => row.slice(first).every(isNumber));
   if (!right) return [];
   return [
@@ -458,9 +460,7 @@ export async function importSheet(box, name, handOver, asks = false, earlier = n
           { class: 'controls' },
           choice('read as', kReadAs, kind, (value) => {
             kind = value;
-            if (kind !== 'tracker' || said.size) return draw(now);
-            propose(now, true);
-            return draw(said.size ? null : now);
+            return kind === 'tracker' && !said.size ? asPoints(now) : draw(now);
           }),
           kind === 'table' && now.sheets.length > 1 ? sheets(now) : null,
           forms[kind].elements,
@@ -498,6 +498,18 @@ export async function importSheet(box, name, handOver, asks = false, earlier = n
       ),
     );
     return null;
+  }
+  /** Shows the columns as points of a tracker; words above them that name no coordinate are a title, and no headings. */
+  async function asPoints(now) {
+    propose(now, true);
+    const known = ({ name: word }) => /^[xyz]$/i.test(word) || kTracker.has(word) || axes.some((axis) => axis.name === word);
+    if (!said.size && !now.workbook && now.heading_line != null && !now.columns.some(known)) {
+      forms.tracker.fill({ skip: [String(now.heading_line)] });
+      const below = await guarded(error, ask);
+      if (below) propose(below, true);
+      if (!said.size) forms.tracker.fill({ skip: [''] });
+    }
+    return draw(said.size ? null : now);
   }
   /** What the columns of a tracker's points probably are. */
   function propose(preview, stated) {
