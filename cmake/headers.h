@@ -6,8 +6,12 @@
 #include <gtest/gtest.h>
 #endif
 
+// Who reads a source by its flags, without this precompiled, may have no path to Eigen.
+#if __has_include(<Eigen/Core>)
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#endif
+
 #include <algorithm>
 #include <array>
 #include <chrono>

@@ -210,12 +210,12 @@ class Diagnoser {
     return StepEvidence{together, false};
   }
 
-  /// True if runs held out in turn can replace check rows, of which there are none: for a named effect of all
-  /// runs without a searched shape. All runs have the same targets, and can share the shape of another error.
-  bool runs_alone_confirm(std::size_t item) const {
-    return std::none_of(measurement_.check.begin(), measurement_.check.end(),
-                        [](char c) { return c != 0; }) &&
-           !pool_.is_custom(item) && !is_searched(item) && pool_.candidate(item).choice.runs.empty();
+  /// True if runs held out in turn can replace check rows: there are none, or they hardly see the effect.
+  /// Only for a named effect of all runs without a searched shape: all runs have the same targets, and can
+  /// share the shape of another error.
+  bool runs_replace_check_rows(const Proof& proof, std::size_t item) const {
+    return proof.expected < options_.thresholds.proof.evidence && !pool_.is_custom(item) &&
+           !is_searched(item) && pool_.candidate(item).choice.runs.empty();
   }
 
   /// Variance of the independent noise of a weighted reading beside a fit, for proof_on_check_rows().
@@ -273,9 +273,9 @@ class Diagnoser {
 
   /// The stepwise model with its fits.
   struct Steps {
-    std::vector<std::size_t> accepted;       // items that lower chi^2 in the fit, and that the rows confirm
-    std::set<std::size_t> confirmed;         // of these, items that the check rows confirm; without check
-                                             // rows, those that held-out runs confirm without doubt
+    std::vector<std::size_t> accepted;  // items that lower chi^2 in the fit, and that the rows confirm
+    std::set<std::size_t> confirmed;    // of these, items that the check rows confirm; where these hardly
+                                        // see an item, those that held-out runs confirm without doubt
     std::vector<std::string> not_confirmed;  // names of steps that the check rows do not confirm
     std::vector<Contradicted> contradicted;  // of these, items that one file of check rows contradicts
     std::vector<LadderStep> ladder;          // begins with the model as given
@@ -328,10 +328,11 @@ class Diagnoser {
         exclude();
         continue;
       }
-      // Check rows that favour the step, beside runs held out in turn that leave no doubt; without check
-      // rows, such runs alone.
+      // Check rows that favour the step, beside runs held out in turn that leave no doubt; where check rows
+      // hardly see it, such runs alone.
       const bool without_doubt = confirmation->value > options_.thresholds.proof.contradiction;
-      if (confirmation->of_check_rows || (without_doubt && (proof.evidence > 0 || runs_alone_confirm(item))))
+      if (confirmation->of_check_rows ||
+          (without_doubt && (proof.evidence > 0 || runs_replace_check_rows(proof, item))))
         steps.confirmed.insert(item);
       steps.ladder.push_back(step_of(item, fitted, *confirmation));
       steps.machine_text = fitted.text;

@@ -268,10 +268,8 @@ class Decision {
     if (square <= limits_.doubtful_uncertainty && square - 1 <= explained) return {};
     return fmt::format(
                "An error that changes {} remains, and u does not state this error: the residual of the "
-               "readings is "
-               "{:.2g} u (noise model: {}). Either the instrument drifts, or an error of the machine depends "
-               "on no "
-               "recorded quantity. No cause is named; {} is only a candidate.{}",
+               "readings is {:.2g} u (noise model: {}). Either the instrument drifts, or an error of the "
+               "machine depends on no recorded quantity. No cause is named; {} is only a candidate.{}",
                quick ? "from row to row" : "slowly", std::sqrt(square),
                ::vernier::fit::in_words(answer_.noise, answer_.noise_unit), pool_.candidate(*doubtful).spoken,
                check_rows_in_words(answer_.ladder, accepted_.size())) +

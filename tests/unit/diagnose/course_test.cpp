@@ -251,8 +251,9 @@ Diagnosis diagnosis_of_swings(const std::function<double(double y, int swing)>& 
         const double at = sense * far * (2.0 * k / (kOfSwing - 1) - 1);
         (of_y ? y : x) = std::round((of_y ? 200 : 250) + at);
         const double off = error(y, of_y ? swing : kSwings - 1);
+        const double noise_y = noise(random), noise_x = noise(random);
         text += fmt::format("{},{},{},{},{:.6f},{:.6f},1,r{},{}\n", x, y, of_y ? 1 : sense, of_y ? sense : -1,
-                            x + noise(random), y + off + noise(random), (of_y ? 0 : 5) + swing / 3,
+                            x + noise_x, y + off + noise_y, (of_y ? 0 : 5) + swing / 3,
                             k == swing % kOfSwing ? "check" : "fit");
       }
     }

@@ -3,11 +3,14 @@
 // remove the error of the chain.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <random>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "tools/exchange/left_out.h"
 #include "tools/exchange/printer/correction.h"
@@ -147,6 +150,35 @@ TEST(PrinterFiles, ASquarenessThatWasNotMeasuredIsNotWritten) {
   EXPECT_EQ(one.value.at("xy_skew"), 0);
   EXPECT_NEAR(one.value.at("yz_skew"), std::tan(0.07 / 57.29578), 2e-5);
   ASSERT_EQ(correction.unmeasured.size(), 1u);
+}
+
+/// What no reading determines takes its value nearest zero: a skew that is open to a third is written too
+/// small by about as much (a square and a bed in one fit of all errors: 12 %).
+TEST(PrinterFiles, APartThatIsOpenToMoreThanATenthIsNotWritten) {
+  const auto unmeasured = [](double share, bool size_known) {
+    Machine machine = not_measured({"EC0Y"});
+    auto record = std::make_shared<FitRecord>(*machine.fitted);
+    record->open = Eigen::MatrixXd::Constant(1, 1, 0.1 * share);  // deg, of 0.1 deg
+    machine.fitted = record;
+    PrinterFeatures features = features_of(Firmware::kKlipper, {});
+    features.steps = true;
+    features.size_known = size_known;
+    std::vector<std::string> names;
+    for (const UnmeasuredPart& one :
+         printer_correction(machine, three_axes(machine), features, at_rest(machine), 1).unmeasured)
+      names.push_back(one.name);
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  const Names of_y_and_z = unmeasured(0.05, true);  // scales that the machine file does not have
+  EXPECT_EQ(std::count(of_y_and_z.begin(), of_y_and_z.end(), "XY"), 0);
+  EXPECT_EQ(std::count(of_y_and_z.begin(), of_y_and_z.end(), "X"), 0);
+  const Names third = unmeasured(0.3, true);
+  EXPECT_EQ(std::count(third.begin(), third.end(), "XY"), 1);
+  // Distances without a known size give no scale, whatever value the fit left.
+  const Names without_size = unmeasured(0.05, false);
+  EXPECT_EQ(std::count(without_size.begin(), without_size.end(), "X"), 1);
+  EXPECT_EQ(std::count(without_size.begin(), without_size.end(), "XY"), 0);
 }
 
 TEST(PrinterErrors, AreThoseOfTheChainWithTheFiles) {

@@ -810,6 +810,21 @@ async function pointsOfAMill(page) {
   await page.type(`${titled} [data-option=skip]`, '1');
   await page.type(`${titled} [data-option=nominal]`, 'mill_list.csv');
   await page.until(`document.querySelector('${titled} [data-option=comment]')`, 'the field of comments');
+  // Points whose names are numbers, below a title with as many words as a row has cells.
+  await page.drop([
+    {
+      name: 'numbered.txt',
+      text: `Roboter Zelle 4 Kalibrierung\n${places.map((row, i) => `${i + 1}  ${row.map((one) => (one + 2000).toFixed(4)).join('  ')}`).join('\n')}\n`,
+    },
+  ]);
+  const numbered = '[data-of="numbered.txt"]';
+  await page.choose(`${numbered} select:has(option[value=tracker])`, 'tracker');
+  await page.until(`document.querySelector('${numbered} #proposed-unit')`, 'the proposal for points without headings');
+  assert.deepEqual(
+    await page.evaluate(`[...document.querySelectorAll('${numbered} [aria-label^="name of column"]')].map((one) => one.value)`),
+    ['point', 'x', 'y', 'z'],
+  );
+  assert.equal(await page.evaluate(`document.querySelector('${numbered} [data-option=skip]').value`), '1');
 }
 
 /** The same as a controller and a tracker write them: no units, a decimal comma, the points in another order. */

@@ -81,8 +81,8 @@ std::optional<std::uint32_t> cycle_us_of(const model::Measurement& m) {
   return std::nullopt;
 }
 
-constexpr const char* kReflector =
-    "reflector";  // tool point of a simulated loop, instead of that of the machine file
+/// Tool point of a simulated loop, instead of that of the machine file.
+constexpr const char* kReflector = "reflector";
 
 /// Readings of the measurement with the running correction of a machine, or the reason why they are unknown.
 Json replayed(const ModelStep& model_step, const model::Measurement& rows, const model::Machine& from) {

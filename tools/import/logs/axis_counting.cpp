@@ -26,7 +26,7 @@ ImportTable counted(const ImportTable& table, const Countings& countings) {
     if (found == countings.end() || found->second.is_that_of_machine()) continue;
     for (std::string& cell : column.cells)
       if (const auto value = text::parse_number(cell))
-        cell = text::number_text((found->second.reversed ? -*value : *value) + found->second.zero);
+        cell = text::number_text(found->second.position(*value));
   }
   return other;
 }
@@ -82,9 +82,8 @@ class Search {
 /// The counting of fewest axes among those that agree about as well as the best one.
 std::optional<OtherCounting> clearest(const std::vector<OtherCounting>& tried, double limit_mm,
                                       double given_mm) {
-  constexpr double kBetter =
-      10;  // times, than as given: a wrong sign is hundreds of mm, an error of a robot a few
-  constexpr double kAlike = 2;  // times the best distance
+  constexpr double kBetter = 10;  // times, than as given: a wrong sign is hundreds of mm
+  constexpr double kAlike = 2;    // times the best distance
   double best_mm = given_mm;
   for (const OtherCounting& one : tried) best_mm = std::min(best_mm, one.farthest_mm);
   if (best_mm > std::max(limit_mm, given_mm / kBetter)) return std::nullopt;

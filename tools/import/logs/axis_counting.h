@@ -18,6 +18,7 @@ struct AxisCounting {
   double zero = 0;  // in the unit of the list
 
   bool is_that_of_machine() const { return !reversed && zero == 0; }
+  double position(double number) const { return (reversed ? -number : number) + zero; }
 };
 
 /// A heading with a sign or an addend: "-A3", "A3+90", "-A3-90".

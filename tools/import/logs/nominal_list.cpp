@@ -31,8 +31,7 @@ std::string position_cell(const ListedRows& list, std::size_t i, std::size_t col
     throw text::InputError(list.place(i), cell, "not a number, for the nominal position of " + axis.name);
   const auto counting = list.counting.find(axis.name);
   if (counting == list.counting.end()) return *number;
-  const double value = *text::parse_number(*number);
-  return text::number_text((counting->second.reversed ? -value : value) + counting->second.zero);
+  return text::number_text(counting->second.position(*text::parse_number(*number)));
 }
 
 /// The column with the names of the points: the first one that is no axis and has a cell in each row.
@@ -315,23 +314,20 @@ std::string other_counting(const ImportTable& table, const ImportTable& points, 
 /// What to look at if no other reading of the files makes the points agree.
 std::string what_to_check(const model::Machine& machine, bool without_names, double off_mm,
                           double tolerance_mm) {
-  constexpr double kMostOfAMachine =
-      5;  // times the permitted distance: a robot of 6 to 30 mm before its calibration
+  constexpr double kMostOfAMachine = 5;  // times the permitted distance: a robot before its calibration
   std::string text = ": check the order and the names of both lists";
   const bool turns = std::any_of(machine.axes.begin(), machine.axes.end(),
                                  [](const model::Axis& axis) { return axis.rotary; });
   if (machine.tool_shifts.empty() && turns)
     text +=
         "; if the points are those of a reflector at an unknown place on the tool, declare it in the machine "
-        "file "
-        "(vernier set MACHINE --reflector)";
+        "file (vernier set MACHINE --reflector)";
   if (without_names)
     text +=
         "; row n of the list was taken as point n: if the points have another order, both files need a "
-        "column with "
-        "the names of the points";
+        "column with the names of the points";
   if (off_mm <= kMostOfAMachine * kTolerances * tolerance_mm)
-    text += fmt::format("; if the machine can have errors of this size, give --tolerance {:.2g}",
+    text += fmt::format("; if the machine can have errors of this size, give --tolerance {:g}",
                         std::ceil(10 * off_mm / kTolerances + 1) / 10);
   return text;
 }
@@ -370,6 +366,7 @@ void check_distances(NominalTable& result, const ImportTable& points, const List
 }  // namespace
 
 double nominal_tolerance_mm(const model::Machine& machine) {
+  // A third of the largest distance of a point: of a machine tool, and of a robot before its calibration.
   constexpr double kOfMachine_mm = 2, kOfRobot_mm = 5;
   const bool robot = std::all_of(machine.axes.begin(), machine.axes.end(),
                                  [](const model::Axis& axis) { return axis.rotary; });
