@@ -263,9 +263,9 @@ class Decision {
     if (doubtful == accepted_.end()) return {};
     const double square = mean_square_beside_steps(quick);
     // Effects that explain less than the drift leaves may be a part of the same unknown error.
-    const double explained =
-        answer_.ladder.front().chi_square_per_freedom - answer_.ladder.back().chi_square_per_freedom;
-    if (square <= limits_.doubtful_uncertainty && square - 1 <= explained) return {};
+    if (square <= limits_.doubtful_uncertainty &&
+        square - 1 <= explained_by_steps(0, answer_.ladder.size() - 1))
+      return {};
     return fmt::format(
                "An error that changes {} remains, and u does not state this error: the residual of the "
                "readings is {:.2g} u (noise model: {}). Either the instrument drifts, or an error of the "
@@ -309,14 +309,10 @@ class Decision {
     const std::string why = unrecorded_heat_in_words(names_of(parts));
     const std::size_t warm_up = static_cast<std::size_t>(
         std::find(accepted_.begin(), accepted_.end(), parts.back()) - accepted_.begin());
-    std::vector<LadderStep>& ladder = answer_.ladder;
-    const auto explained = [&](std::size_t from, std::size_t to) {
-      return ladder[from].chi_square_per_freedom - ladder[to].chi_square_per_freedom;
-    };
     if (parts.front() != accepted_.front() ||
-        explained(warm_up, warm_up + 1) >= limits_.small_structure * explained(0, 1))
+        explained_by_steps(warm_up, warm_up + 1) >= limits_.small_structure * explained_by_steps(0, 1))
       return why;
-    ladder[warm_up + 1].certain = false;
+    answer_.ladder[warm_up + 1].certain = false;
     doubtful_.push_back(parts.back());
     rest_ = no_certain_cause(names_of({parts.back()}).front() + ".");
     return {};
@@ -381,14 +377,11 @@ class Decision {
   /// The first effect has no doubt of its own, no other cause, is confirmed by check rows, and explains most
   /// of what all effects explain: it keeps its name, whatever the doubtful ones are.
   bool is_most_of_the_error(const std::vector<std::size_t>& doubtful) const {
-    const std::vector<LadderStep>& ladder = answer_.ladder;
     const std::size_t first = accepted_.front();
-    const auto explained = [&](std::size_t to) {
-      return ladder.front().chi_square_per_freedom - ladder[to].chi_square_per_freedom;
-    };
     return std::find(doubtful.begin(), doubtful.end(), first) == doubtful.end() && !pool_.is_custom(first) &&
-           ladder[1].of_check_rows && found_.close(0).empty() &&
-           explained(1) >= limits_.most_of_excess * explained(ladder.size() - 1);
+           answer_.ladder[1].of_check_rows && found_.close(0).empty() &&
+           explained_by_steps(0, 1) >=
+               limits_.most_of_excess * explained_by_steps(0, answer_.ladder.size() - 1);
   }
 
   /// Returns the reason why no cause is named; or nothing, if the first effect stays a cause whatever the
@@ -531,6 +524,11 @@ class Decision {
   std::string rest() const { return open_steps_in_words(answer_.ladder) + rest_; }
 
   // What the rules need.
+
+  /// What the steps of the ladder after `from` up to `to` explain, in chi^2 per degree of freedom.
+  double explained_by_steps(std::size_t from, std::size_t to) const {
+    return answer_.ladder[from].chi_square_per_freedom - answer_.ladder[to].chi_square_per_freedom;
+  }
 
   /// Do u or repeats state the noise of the readings?
   bool is_noise_stated() const {

@@ -29,8 +29,7 @@ std::string without_findings(const Json& result, const residual::FailurePicture&
   if (picture.omnibus_p < kNoChance) return "the residual has structure, but no single column explains it";
   if (rms_um > 0 && noise_um <= 0)
     return "no single column explains the residual, and u is not stated: whether the residual is noise is "
-           "not "
-           "known";
+           "not known";
   return "the residual has no structure beyond chance";
 }
 

@@ -229,6 +229,11 @@ bool is_units(const std::vector<std::string>& row) {
   return units >= std::min<std::size_t>(2, row.size());
 }
 
+std::size_t filled_cells(const std::vector<std::string>& row) {
+  return static_cast<std::size_t>(
+      std::count_if(row.begin(), row.end(), [](const std::string& cell) { return !cell.empty(); }));
+}
+
 /// Cells of a line that also apply to the empty cells at their right: merged cells of a workbook.
 std::vector<std::string> spread_to_the_right(const std::vector<std::string>& upper,
                                              const std::vector<std::string>& lower) {
@@ -243,8 +248,7 @@ std::vector<std::string> spread_to_the_right(const std::vector<std::string>& upp
 bool is_second_line(const Sheet& sheet, std::size_t row) {
   const std::vector<std::string>& lower = sheet.rows[row];
   const std::vector<std::string>& upper = sheet.rows[row - 1];
-  if (std::count_if(upper.begin(), upper.end(), [](const auto& cell) { return !cell.empty(); }) < 2)
-    return false;
+  if (filled_cells(upper) < 2) return false;
   const std::vector<std::string> spread = spread_to_the_right(upper, lower);
   std::set<std::string> seen;
   std::set<std::pair<std::string, std::string>> pairs;
@@ -507,7 +511,7 @@ Heading parse_heading(std::string_view cell) {
 
 namespace {
 
-/// Index of the first row of data; the number of rows if there is none.
+/// Returns the index of the first row with data, or the number of rows if no row has data.
 std::size_t first_row_of_data(const Sheet& sheet) {
   std::size_t first = 0;
   while (first < sheet.rows.size() && !is_row_of_data(sheet, first)) ++first;
@@ -518,11 +522,8 @@ std::size_t first_row_of_data(const Sheet& sheet) {
 /// another separator.
 bool is_title_alone(const Sheet& sheet, std::size_t row, std::size_t first) {
   constexpr std::size_t kFewestWords = 4;  // a heading alone in its line has fewer
-  const auto filled = [&](std::size_t of) {
-    return std::count_if(sheet.rows[of].begin(), sheet.rows[of].end(),
-                         [](const std::string& cell) { return !cell.empty(); });
-  };
-  if (sheet.workbook || filled(row) != 1 || filled(first) < 2) return false;
+  if (sheet.workbook || filled_cells(sheet.rows[row]) != 1 || filled_cells(sheet.rows[first]) < 2)
+    return false;
   const auto cell = std::find_if(sheet.rows[row].begin(), sheet.rows[row].end(),
                                  [](const std::string& one) { return !one.empty(); });
   return text::words_in(*cell, " \t,;|").size() >= kFewestWords;
@@ -536,9 +537,7 @@ void move_units_below_headings(Sheet& sheet) {
   if (first < kLines || first == sheet.rows.size()) return;
   const std::vector<std::string>&names = sheet.rows[first - kLines], &units = sheet.rows[first - 2],
         &runs = sheet.rows[first - 1];
-  if (!is_units(units) || is_units(runs) ||
-      std::count_if(names.begin(), names.end(), [](const auto& cell) { return !cell.empty(); }) < 2)
-    return;
+  if (!is_units(units) || is_units(runs) || filled_cells(names) < 2) return;
   for (std::size_t k = 0; k < runs.size(); ++k)
     if (!runs[k].empty() && units[k].empty()) return;
   std::swap(sheet.rows[first - 2], sheet.rows[first - 1]);
@@ -560,11 +559,7 @@ SheetTable parts_of_sheet(const Sheet& sheet) {
     table.units_row = 0;
   }
   if (table.has_headings && sheet.separator == ',' && !sheet.workbook) {
-    const auto filled = [&](std::size_t row) {
-      return std::count_if(sheet.rows[row].begin(), sheet.rows[row].end(),
-                           [](const auto& cell) { return !cell.empty(); });
-    };
-    if (filled(first) > filled(table.heading_row))
+    if (filled_cells(sheet.rows[first]) > filled_cells(sheet.rows[table.heading_row]))
       throw text::InputError({sheet.file, sheet.line[first]},
                              text::joined(sheet.rows[first], ",").substr(0, 30),
                              "the rows have more fields than headings; if the table has decimal commas and "

@@ -108,13 +108,6 @@ class ElsewhereData : public RealData {
     folder_ = folder_of(name);
     return !folder_.empty();
   }
-  void expect_ladder(double tolerance_um, const std::vector<std::string>& effects) {
-    const json answer = diagnose(folder_);
-    expect_key(answer, json::parse(read_file(folder_ + "/key.json")), tolerance_um);
-    const std::vector<std::string> ladder = effects_of_ladder(answer);
-    for (std::size_t i = 0; i < effects.size(); ++i)
-      EXPECT_TRUE(i < ladder.size() && ladder[i] == effects[i]) << answer["ladder"];
-  }
   std::string folder_;
 };
 
