@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Headers of libraries that most rooms and tests include, read once for each effort (under the sanitizers: vernier_headers_unoptimised)
-# and, where the libraries can be placed anywhere, for executables (vernier_headers_pie). With GCC, which writes out again what they
-# instantiate, it costs more than it saves.
+# Headers of libraries that most rooms and tests include, read once for each effort (vernier_headers_unoptimised, under the sanitizers
+# vernier_headers_unwatched too) and, where the libraries can be placed anywhere, for executables (_pie). With GCC, which writes out again
+# what they instantiate, it costs more than it saves.
 function(vernier_add_headers name)
   add_library(${name} OBJECT ${CMAKE_SOURCE_DIR}/cmake/headers.cpp)
   target_link_libraries(${name} PRIVATE Eigen3::Eigen)
@@ -12,11 +12,23 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND VERNIER_BUILD_TOOLS)
   find_package(Eigen3 REQUIRED NO_MODULE)
   add_compile_definitions(FMT_SHARED)
   vernier_add_headers(vernier_headers)
-  if(VERNIER_SANITIZE)
-    vernier_add_headers(vernier_headers_unoptimised -O0)
+  set(unoptimised FALSE)
+  if(VERNIER_SANITIZE OR VERNIER_TESTS STREQUAL "once")
+    set(unoptimised TRUE)
   endif()
+  if(VERNIER_SHORT_SANITIZE)
+    vernier_add_headers(vernier_headers_unwatched -O0 -fno-sanitize=all)
+  endif()
+  set(of_executables)
   if(CMAKE_POSITION_INDEPENDENT_CODE)
     vernier_add_headers(vernier_headers_pie -fPIE)
-    set_target_properties(vernier_headers_pie PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+    list(APPEND of_executables vernier_headers_pie)
+    if(unoptimised)
+      vernier_add_headers(vernier_headers_unoptimised_pie -fPIE -O0)
+      list(APPEND of_executables vernier_headers_unoptimised_pie)
+    endif()
+    set_target_properties(${of_executables} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  elseif(unoptimised)
+    vernier_add_headers(vernier_headers_unoptimised -O0)
   endif()
 endif()

@@ -55,7 +55,7 @@ TEST(SignColumn, TwoColumnsOfSizesAreOneColumn) {
 
 TEST(OtherQuantities, IncrementsAreNoDeviations) {
   const std::string rows = "0;1,0\n50;2,0\n100;-1,0\n";
-  for (const std::string& head :
+  for (const std::string head :
        {"X [mm];Incremental error X [um]\n", "X [mm];Differenz zur Vorposition X [um]\n",
         "X [mm];Pitch error X [um] (per pitch)\n", "Schrittfehler der Achse\nX [mm];Abweichung X [um]\n",
         "Abweichung gegenüber der vorigen Position\nX [mm];Abweichung X [um]\n",
