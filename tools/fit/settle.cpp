@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "tools/fit/convention.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/noise/noise_estimate.h"
 #include "tools/fit/seen_errors.h"
 #include "tools/maths/decompositions.h"
+#include "tools/maths/inverse.h"
 #include "tools/maths/orthonormal.h"
 
 namespace vernier::fit {
@@ -54,6 +56,9 @@ MatrixXd solve_scaled(const MatrixXd& matrix, const MatrixXd& right) {
 MatrixXd inverse_of(const MatrixXd& matrix) {
   const VectorXd shrink = matrix.diagonal().cwiseSqrt().cwiseInverse();
   MatrixXd scaled = shrink.asDiagonal() * matrix * shrink.asDiagonal();
+  if (matrix.rows() > kMany)
+    if (const std::optional<MatrixXd> inverse = maths::inverse_of_positive(scaled))
+      return shrink.asDiagonal() * *inverse * shrink.asDiagonal();
   const MatrixXd inverse = solve_scaled(scaled, MatrixXd::Identity(matrix.rows(), matrix.cols()));
   return shrink.asDiagonal() * (0.5 * (inverse + inverse.transpose())) * shrink.asDiagonal();
 }
@@ -240,22 +245,22 @@ class Settler {
     data.diagonal() += stated_unit() * stated_.weight;
     const Sparse weak_now = weak();
     const MatrixXd inverse = inverse_of(data + weak_now);
-    // Remaining part of a true value: (inverse * weak)^n, and the contribution of a reading.
-    const MatrixXd once = inverse * weak_now;
-    MatrixXd left = once, more = once;
+    // Remaining part of a true value: (inverse * weak)^n, and the contribution of a reading. Each
+    // inverse * weak * inverse * ... is symmetric, and weak is sparse.
+    MatrixXd power = inverse, gain = inverse;
     for (int pass = 1; pass < kPasses; ++pass) {
-      left = once * left;
-      if (pass + 1 < kPasses) more += left;
+      power = maths::symmetric_product(power * weak_now, inverse);
+      gain += power;
     }
-    const MatrixXd gain = inverse + more * inverse;
-    const double fitted = static_cast<double>(once.rows()) - left.cwiseProduct(left.transpose()).sum();
+    const MatrixXd left = power * weak_now;
+    const double fitted = static_cast<double>(left.rows()) - left.cwiseProduct(left.transpose()).sum();
     result_.freedom = observations_ - fitted;
     if (result_.freedom > 0.5) {
       const double reduced = result_.chi_square / result_.freedom;
       result_.variance = with_u_ ? std::max(1.0, reduced) : std::max(reduced, 1e-300);
     }
     const Sparse spread = scale_.asDiagonal() * convention_.correlation * scale_.asDiagonal();
-    const MatrixXd bias = (left * spread) * left.transpose();
+    const MatrixXd bias = maths::symmetric_product(left * spread, left.transpose());
     result_.bias = bias.diagonal().cwiseMax(0).cwiseSqrt();
     result_.covariance = covariance_from_readings(data, gain, left) + bias;
     result_.open = bias;
@@ -300,8 +305,7 @@ class Settler {
   MatrixXd covariance_from_readings(const MatrixXd& data, const MatrixXd& gain, const MatrixXd& left) {
     const std::optional<MatrixXd> correlated = readings_covariance(data);
     if (correlated && !of_files_) return gain * *correlated * gain.transpose();
-    const MatrixXd half = gain - gain * left.transpose();
-    const MatrixXd independent = 0.5 * result_.variance * (half + half.transpose());
+    const MatrixXd independent = result_.variance * (gain - maths::symmetric_product(gain, left.transpose()));
     if (!correlated) return independent;
     // The correlation can be that of one file, which the model describes badly. It must not make an estimate
     // from another file more certain.

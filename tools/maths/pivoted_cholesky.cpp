@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "tools/maths/inverse.h"
+
 namespace vernier::maths {
 namespace {
 
@@ -109,9 +111,9 @@ Eigen::MatrixXd PivotedCholesky::null_basis() const {
 
 Eigen::MatrixXd PivotedCholesky::inverse() const {
   const Index n = lower_.rows();
-  Eigen::MatrixXd root = Eigen::MatrixXd::Identity(rank_, rank_);
-  lower_.topLeftCorner(rank_, rank_).triangularView<Eigen::Lower>().solveInPlace(root);
-  const Eigen::MatrixXd kept = root.transpose() * root.triangularView<Eigen::Lower>();
+  Eigen::MatrixXd root = lower_.topLeftCorner(rank_, rank_);
+  invert_lower(root);
+  const Eigen::MatrixXd kept = square_of_lower(root);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n, n);
   for (Index k = 0; k < rank_; ++k)
     for (Index i = 0; i < rank_; ++i)

@@ -80,6 +80,32 @@ TEST(Observability, ManyParametersFindWhatEigenvectorsFind) {
   EXPECT_LT((inverse * eigen.eigenvectors().col(0)).norm(), 1e-8 * inverse.norm());
 }
 
+/// Directions just below the limit beside others just above it: as the eigenvectors tell.
+TEST(Observability, ManyParametersWithDirectionsOnBothSidesOfTheLimit) {
+  constexpr Eigen::Index kMany = 240;
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(500, kMany);
+  for (const auto& [k, times] :
+       {std::pair(20, 0.3), std::pair(70, 0.1), std::pair(120, 5.0), std::pair(180, 30.0)})
+    jacobian.col(k) = jacobian.col(k + 1) + times * kUnseenShare * Eigen::VectorXd::Random(500) * 10;
+  const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
+  const Eigen::VectorXd length = normal.diagonal().cwiseSqrt();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(length.cwiseInverse().asDiagonal() * normal *
+                                                             length.cwiseInverse().asDiagonal());
+  const Eigen::VectorXd& squares = eigen.eigenvalues();
+  const auto lost = (squares.array() < kUnseenShare * kUnseenShare * squares[kMany - 1]).count();
+  ASSERT_GT(lost, 0);
+  ASSERT_LT(lost, 4);
+  const Observability seen = observe(normal);
+  EXPECT_EQ(seen.rank, kMany - lost);
+  EXPECT_EQ(seen.unidentifiable.size(), static_cast<std::size_t>(lost));
+  const Eigen::MatrixXd kept = eigen.eigenvectors().rightCols(kMany - lost);
+  const Eigen::MatrixXd expected =
+      kept * squares.tail(kMany - lost).cwiseInverse().asDiagonal() * kept.transpose();
+  const Eigen::MatrixXd inverse = length.asDiagonal() * seen.covariance * length.asDiagonal();
+  EXPECT_LT((inverse - expected).norm(), 1e-3 * expected.norm());
+  EXPECT_NEAR(seen.condition, std::sqrt(squares[kMany - 1] / squares[lost]), 0.03 * seen.condition);
+}
+
 TEST(Observability, NamesTheWeakestDirectionThatIsStillSeen) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(40, 5);
   jacobian.col(4) = jacobian.col(1) + 1e-3 * jacobian.col(4);

@@ -120,19 +120,48 @@ double largest_eigenvalue(const Eigen::MatrixXd& matrix) {
   return value;
 }
 
-/// Finds the smallest eigenvalues of the identified part by inverse iteration on a few more
-/// vectors than are needed.
-void find_weak(Parts& parts) {
-  const Eigen::Index n = parts.inverse.rows(), wanted = std::min(kWeakest, parts.rank),
-                     width = std::min(parts.rank, 3 * kWeakest);
+/// Finds the smallest eigenvalues of the part that the pivots identify, by inverse iteration on a few more
+/// vectors than are needed, and takes those below `limit` out of it. Returns false if there can be more than
+/// were found, or if one of them is so near the limit that rounding decides.
+bool find_weak(Parts& parts, double limit) {
+  constexpr int kTurns = 12, kMostTurns = 60;  // of the iteration, from one look at its error to the next
+  constexpr double kConverged = 1e-8;          // of an eigenvalue
+  constexpr double kNear = 1e-3;               // of the limit
+  const Eigen::Index n = parts.inverse.rows(), width = std::min(parts.rank, 3 * kWeakest);
   Eigen::MatrixXd v = Eigen::MatrixXd::NullaryExpr(n, width, [](Eigen::Index i, Eigen::Index k) {
     return std::cos(static_cast<double>((i + 1) * (k + 1)));
   });
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
-  for (int i = 0; i < 12; ++i) v = maths::thin_q(parts.inverse * v);
-  ritz.compute(v.transpose() * parts.inverse * v);
-  parts.weak_squares = ritz.eigenvalues().tail(wanted).reverse().cwiseInverse();
-  parts.weak = v * ritz.eigenvectors().rightCols(wanted).rowwise().reverse();
+  Eigen::VectorXd square;  // smallest first
+  Eigen::Index lost = 0;
+  bool settled = false;
+  for (int turn = 0; turn < kMostTurns && !settled; turn += kTurns) {
+    for (int i = 0; i < kTurns; ++i) v = maths::thin_q(parts.inverse * v);
+    const Eigen::MatrixXd image = parts.inverse * v;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(v.transpose() * image);
+    square = ritz.eigenvalues().reverse().cwiseInverse();
+    const Eigen::MatrixXd turned = ritz.eigenvectors().rowwise().reverse();
+    v *= turned;
+    lost = (square.array() < limit).count();
+    const Eigen::MatrixXd off = image * turned - v * square.cwiseInverse().asDiagonal();
+    settled = (off.colwise().norm().head(lost).array() <
+               kConverged * square.head(lost).transpose().array().inverse())
+                  .all();
+  }
+  const bool all_found = width == parts.rank || square[width - 1] >= 2 * limit;
+  const Eigen::Index wanted = std::min(kWeakest, parts.rank - lost);
+  if (!settled || !all_found || wanted == 0 || width - lost < wanted ||
+      ((square.array() / limit - 1).abs() < kNear).any())
+    return false;
+  if (lost > 0) {
+    const Eigen::MatrixXd below = v.leftCols(lost);
+    parts.inverse -= below * square.head(lost).cwiseInverse().asDiagonal() * below.transpose();
+    parts.rank -= lost;
+    parts.unseen.conservativeResize(Eigen::NoChange, parts.unseen.cols() + lost);
+    parts.unseen.rightCols(lost) = below;
+  }
+  parts.weak_squares = square.segment(lost, wanted);
+  parts.weak = v.middleCols(lost, wanted);
+  return true;
 }
 
 /// Returns nullopt if a direction is so near the limit that only the eigenvalues can decide.
@@ -148,8 +177,7 @@ std::optional<Parts> by_pivots(const Eigen::MatrixXd& scaled, double limit_share
   if (parts.rank == 0) return std::nullopt;
   parts.unseen = factor.null_basis();
   parts.inverse = without(factor.inverse(), parts.unseen);
-  find_weak(parts);
-  if (parts.weak_squares[0] < 2 * limit) return std::nullopt;
+  if (!find_weak(parts, limit)) return std::nullopt;
   return parts;
 }
 
