@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/set_up.h"
+#include "tools/format/readings.h"
+#include "tools/text/words.h"
 
 namespace vernier::commands {
 namespace {
@@ -137,6 +140,25 @@ std::string other_zero_of_joint(const model::Machine& machine, const model::Meas
       "joint from another zero or in another direction{}. Correct the column of the joint in the readings, "
       "or the joint in the machine file, and fit again: an export of this fit describes another machine",
       names, most * kQuarter_deg, joint.empty() ? "" : ": " + joint);
+}
+
+std::string readings_of_one_weight(const model::Measurement& m) {
+  std::vector<std::set<format::ReadingForm>> forms(m.files.size());
+  for (const model::Observation& one : m.observations) {
+    if (model::uncertainty_of(m, one) > 0) return {};
+    const format::ReadingForm form = format::form_of(one.kind);
+    // A rotation beside a point is a reading of the same instrument.
+    forms[m.file[one.row]].insert(form == format::ReadingForm::kRotation ? format::ReadingForm::kPoint
+                                                                         : form);
+  }
+  if (std::all_of(forms.begin(), forms.end(), [&](const auto& one) { return one == forms.front(); }))
+    return {};
+  return fmt::format(
+      "the readings of {} have no standard uncertainty (u), and so all of them have the same weight: state u "
+      "of "
+      "each file, such as 0.02 mm of a caliper (import table: --set \"u[mm]=0.02\"), so that the less exact "
+      "instrument does not hide what the other one measured",
+      text::joined(m.files, ", "));
 }
 
 }  // namespace vernier::commands

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Readings that describe the machine in another way than the machine file: other rows, other zeros of joints.
+// Readings that describe the machine in another way than the machine file: other rows, other zeros of joints;
+// and of other instruments.
 #pragma once
 #include <string>
 
@@ -19,5 +20,9 @@ std::string readings_of_other_rows(const model::Machine& machine, const model::M
 /// the fit of the readings with this joint changed leaves as little. Empty without such an angle.
 std::string other_zero_of_joint(const model::Machine& machine, const model::Measurement& m,
                                 const fit::FitResult& result);
+
+/// Returns a sentence if files have readings of different forms (points, distances, touches) and no reading
+/// has a standard uncertainty: instruments of different noise then have the same weight. Otherwise empty.
+std::string readings_of_one_weight(const model::Measurement& m);
 
 }  // namespace vernier::commands

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "tools/diagnose/causes.h"
@@ -20,6 +21,7 @@
 #include "tools/fit/findings.h"
 #include "tools/fit/least_squares/statistics.h"
 #include "tools/fit/noise/noise.h"
+#include "tools/format/readings.h"
 #include "tools/maths/decompositions.h"
 #include "tools/model/rebind.h"
 
@@ -196,10 +198,9 @@ class Decision {
   /// confirmed step removes: 0.8 um of the interpolation between stations beside a backlash of 12 um. Such a
   /// step is certain, whatever the structure is. Steps that are not so much larger are not.
   bool leaves_a_small_structure() {
-    const std::vector<residual::Finding>& left = answer_.left.findings;
-    if (!is_of_the_size_of_noise() || left.empty() || answer_.ladder.front().rms_urad) return false;
-    double structure_um2 = 0;
-    for (const residual::Finding& finding : left) structure_um2 += finding.rms_um * finding.rms_um;
+    if (!is_of_the_size_of_noise() || answer_.left.findings.empty() || answer_.ladder.front().rms_urad)
+      return false;
+    const double structure_um2 = mean_square_of_structure();
     const auto stands = [&](std::size_t step) {
       const std::size_t item = accepted_[step - 1];
       const double before = answer_.ladder[step - 1].rms_um.value_or(0),
@@ -211,6 +212,21 @@ class Decision {
     for (std::size_t step = 2; step < answer_.ladder.size(); ++step)
       if (!stands(step)) answer_.ladder[step].certain = false;
     return true;
+  }
+
+  /// Mean square of the structure that is left, over all fit readings as the mean square of a step, um^2: a
+  /// finding is in one kind of reading.
+  double mean_square_of_structure() const {
+    std::map<std::string, double> count;
+    double all = 0, sum = 0;
+    for (const model::Observation& one : rows_.observations) {
+      if (rows_.check[one.row] != 0) continue;
+      count[format::name_of(one.kind)] += 1;
+      all += 1;
+    }
+    for (const residual::Finding& finding : answer_.left.findings)
+      sum += finding.rms_um * finding.rms_um * count[finding.observation];
+    return sum / std::max(1.0, all);
   }
 
   /// Certain steps explain most of the error beyond u, the first of them the larger part: they are named,

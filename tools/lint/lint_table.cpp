@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/lint/lint_table.h"
 
+#include <algorithm>
 #include <cctype>
 #include <deque>
 
@@ -46,6 +47,12 @@ std::optional<format::AxisColumnName> LintNames::of_axis(const std::string& name
 bool LintNames::is_of_axis(const std::string& name, format::AxisQuantity quantity) const {
   const auto column = of_axis(name);
   return column && column->quantity == quantity;
+}
+
+bool LintNames::has_undeclared_touches(const LintTable& table) const {
+  const LintColumn* const on = table.find(format::columns::kOn);
+  return on != nullptr && machine_ != nullptr && machine_->artefacts.empty() &&
+         std::any_of(on->cell.begin(), on->cell.end(), [](const std::string& cell) { return !cell.empty(); });
 }
 
 std::string LintNames::needed_unit(const std::string& name) const {

@@ -180,7 +180,7 @@ class Meaning {
                        "no standard uncertainty u in the file: the fit estimates the noise from repeated "
                        "rows, or from the residual",
                        "a column u[um], the instrument's");
-    if (!any_reading_)
+    if (!any_reading_ && !names_.has_undeclared_touches(table_))
       findings_.error(table_.header_line, "", "no row has a reading", "is this a template without readings?");
   }
 
@@ -189,13 +189,18 @@ class Meaning {
     const LintColumn *same = table_.find(columns::kSame), *on = table_.find(columns::kOn);
     if (same != nullptr && names_.is_reading(table_, *same)) look_at_points(*same);
     if (on == nullptr) return;
-    if (machine_ != nullptr && machine_->artefacts.empty()) {
-      if (std::any_of(on->cell.begin(), on->cell.end(), [](const auto& cell) { return !cell.empty(); }))
-        findings_.warn(table_.header_line, columns::kOn,
-                       "the machine file has no <artefact>: this column is not read",
-                       "declare what the tool point touched: <artefact name=\"S1\" type=\"sphere\"/>");
-      return;
+    if (names_.has_undeclared_touches(table_)) {
+      // Without another reading, no command can read the file.
+      const LintWeight weight = any_reading_ ? LintWeight::kWarning : LintWeight::kError;
+      const std::string name = *std::find_if(on->cell.begin(), on->cell.end(),
+                                             [](const std::string& cell) { return !cell.empty(); });
+      findings_.add(weight, table_.header_line, columns::kOn,
+                    "the machine file has no <artefact>: this column is not read",
+                    fmt::format("declare in the machine file what the tool point touched (vernier set "
+                                "--artefact {}:TYPE, with plane, line, point, sphere or cylinder as TYPE)",
+                                name));
     }
+    if (machine_ != nullptr && machine_->artefacts.empty()) return;
     if (names_.is_reading(table_, *on)) look_at_artefacts(*on);
     for (std::size_t row = 0; same != nullptr && row < table_.rows.size(); ++row)
       if (!same->cell[row].empty() && !on->cell[row].empty())

@@ -2,6 +2,7 @@
 #include "tools/model/machine_writer.h"
 
 #include <pugixml.hpp>
+#include <utility>
 
 #include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
@@ -67,9 +68,13 @@ class Writer {
   }
 
   void edit_axis(const pugi::xml_node& node) {
-    const auto axis = machine_.find_axis(node.name());
-    if (axis && machine_.axes[*axis].scale_free)
-      set(node, "scalefactor", text::number_text(machine_.axes[*axis].scale_factor));
+    const auto index = machine_.find_axis(node.name());
+    if (!index) return;
+    const Axis& axis = machine_.axes[*index];
+    if (axis.scale_free) set(node, "scalefactor", text::number_text(axis.scale_factor));
+    for (const auto& [name, limit] : {std::pair("min", axis.min), std::pair("max", axis.max)})
+      if (limit && text::parse_number(text_of(node, name)) != limit)
+        set(node, name, text::number_text(*limit));
   }
 
   void edit_table(const pugi::xml_node& node) {

@@ -127,6 +127,14 @@ TEST(Improve, AddsWhatHeldOutRunsConfirmWhereNoRowsAreCheckRows) {
   EXPECT_EQ(result.json["verdict"], "unexplained");
 }
 
+/// A backlash of 4.5 um beside a structure of 0.2 um in X and in Y, each in a quarter of the readings, which
+/// the sum of its parts made too large; check rows in the tracker's file alone confirm the backlash.
+TEST(Improve, AStructureInOneKindOfReadingsCountsWithItsShareOfThem) {
+  const Improved result = improve("mill_checked_tracker");
+  EXPECT_THAT(result.effects(), ElementsAre("backlash"));
+  EXPECT_THAT(result.said, HasSubstr("Z carriage: backlash"));
+}
+
 /// The scale steps at the begin of a run, as after a collision. A slow response to heat that begins again in
 /// each run explains these rows as well, and was added.
 TEST(Improve, AddsNoHeatThatAChangeBetweenTheRunsExplainsAsWell) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the programs do to what stands where their outputs go: each writer, as a user calls it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -341,6 +342,66 @@ TEST_F(Instruments, AFileWithoutUBesideAFileWithUHasItsOwnNoise) {
       << said();
   EXPECT_EQ(run("vernier fit m.xml laser.csv few.csv -o f.xml"), 1) << said();
   EXPECT_NE(said().find("State the standard uncertainty: a column u[um]"), std::string::npos) << said();
+}
+
+TEST_F(Instruments, ReadingsOfTwoKindsWithoutAnyUAreSaidToHaveOneWeight) {
+  const auto survey = [](const std::string& heading, const std::string& u) {
+    std::string rows = heading;
+    for (int i = 0; i <= 20; ++i)
+      rows += fmt::format("{},{:.6f}{}\n", 30 * i, 30 * i * 1.0001 + 0.001 * (i % 3 - 1), u);
+    return rows;
+  };
+  const auto lengths = [](const std::string& heading, const std::string& u) {
+    return fmt::format(
+        "point,X[mm],distance[mm],from{0}\nA,0,,{1}\nB,300,300.05,A{1}\nC,600,600.04,A{1}\nD,450,450.06,A{1}"
+        "\n",
+        heading, u);
+  };
+  const std::string words = "have no standard uncertainty (u)",
+                    note = "the readings of laser.csv, caliper.csv " + words;
+  write_file(in("laser.csv"), survey("X[mm],x[mm]\n", ""));
+  write_file(in("caliper.csv"), lengths("", ""));
+  ASSERT_EQ(run("vernier fit m.xml laser.csv caliper.csv -o f.xml --json f.json"), 0) << said();
+  EXPECT_NE(said().find("note: " + note), std::string::npos) << said();
+  EXPECT_NE(read_file(in("f.json")).find(note), std::string::npos);
+  // One kind alone, and two kinds with u.
+  ASSERT_EQ(run("vernier fit m.xml laser.csv -o f.xml"), 0) << said();
+  EXPECT_EQ(said().find(words), std::string::npos) << said();
+  write_file(in("laser.csv"), survey("X[mm],x[mm],u[um]\n", ",1"));
+  write_file(in("caliper.csv"), lengths(",u[mm]", ",0.02"));
+  ASSERT_EQ(run("vernier fit m.xml laser.csv caliper.csv -o f.xml"), 0) << said();
+  EXPECT_EQ(said().find(words), std::string::npos) << said();
+}
+
+TEST_F(Instruments, ATravelCanBeReducedToWhatWasMeasured) {
+  std::string machine = kMachine;
+  machine.replace(machine.find("min=\"0\" max=\"600\""), 17, "min=\"-300\" max=\"600\"");
+  write_file(in("m.xml"), machine);
+  std::string rows = "X[mm],x[mm],u[um]\n";
+  for (int i = 0; i <= 20; ++i)
+    rows += fmt::format("{},{:.6f},1\n", 30 * i, 30 * i * 1.0001 + 0.001 * (i % 3 - 1));
+  write_file(in("laser.csv"), rows);
+  EXPECT_EQ(run("vernier set m.xml --measured-travel -o t.xml"), 1) << said();
+  EXPECT_NE(said().find("no fit wrote this machine file"), std::string::npos) << said();
+  ASSERT_EQ(run("vernier fit m.xml laser.csv -o f.xml"), 0) << said();
+  ASSERT_EQ(run("vernier compile f.xml -o image"), 2) << said();
+  EXPECT_NE(said().find("measured-range 0.5 of the measured range, limit 0.25: axis X, measured from 0 to "
+                        "600, range -300 to 600"),
+            std::string::npos)
+      << said();
+  EXPECT_NE(said().find("vernier set --measured-travel"), std::string::npos) << said();
+  ASSERT_EQ(run("vernier set f.xml --measured-travel -o t.xml"), 0) << said();
+  EXPECT_NE(said().find("X: travel from 0 to 600 mm, as measured"), std::string::npos) << said();
+  const auto without_command = [](std::string text) {
+    const std::size_t from = text.find("<!-- made by");
+    return text.erase(from, text.find('\n', from) - from);
+  };
+  std::string expected = read_file(in("f.xml"));
+  expected.replace(expected.find("min=\"-300\""), 10, "min=\"0\"");
+  EXPECT_EQ(without_command(read_file(in("t.xml"))), without_command(expected));
+  EXPECT_EQ(run("vernier compile t.xml -o image"), 0) << said();
+  ASSERT_EQ(run("vernier set t.xml --measured-travel -o t2.xml"), 0) << said();
+  EXPECT_NE(said().find("every axis was measured over its whole travel"), std::string::npos) << said();
 }
 
 }  // namespace

@@ -67,6 +67,51 @@ TEST(NominalList, IsJoinedByTheNamesOfThePoints) {
   EXPECT_LT(*result.rms_mm, 0.02);  // errors of 0.01 mm in three coordinates
 }
 
+/// kPoints with numbers as names, in the order 4, 3, 2, 1.
+ImportTable numbered_points(const std::string& heading) {
+  ColumnMap map;
+  add_column(map, "1=" + heading);
+  for (const char* word : {"2=x[mm]", "3=y[mm]", "4=z[mm]"}) add_column(map, word);
+  ImportTable table = mapped_table(
+      "4, 1030, -420, 0\n3, 1100, -440, 0.01\n2, 1100, -500.01, 0\n1, 1000.01, -500, 0\n", "pts.txt", map);
+  finish_tracker(table);
+  return table;
+}
+
+NominalTable join_numbered(const std::string& heading, const std::string& list,
+                           const std::vector<std::string>& columns = {}) {
+  return with_nominal(numbered_points(heading), {list, "nom.csv", columns},
+                      model::parse_machine(kMachine, "m.xml"), 2);
+}
+
+TEST(NominalList, IsJoinedByNumbersBelowHeadingsThatNamePoints) {
+  const std::vector<std::size_t> reversed = {3, 2, 1, 0};
+  for (const char* heading : {"Punkt", "Nr.", "Pt. No.", "Punkt-Nr", "point"}) {
+    const NominalTable result =
+        join_numbered("point", std::string(heading) + ";X [mm];Y [mm]\n1;0;0\n2;100;0\n3;100;60\n4;30;80\n");
+    EXPECT_EQ(result.names, "point") << heading;
+    EXPECT_EQ(result.rows, reversed) << heading;
+  }
+}
+
+TEST(NominalList, EachFileCanCountThePointsInItsOwnWay) {
+  // The list counts from the first position, the tracker from the last one; then a list that counts twice.
+  const std::vector<std::size_t> in_order = {0, 1, 2, 3};
+  const NominalTable result = join_numbered("point", "Nr;X [mm];Y [mm]\n1;30;80\n2;100;60\n3;100;0\n4;0;0\n");
+  EXPECT_EQ(result.rows, in_order);
+  EXPECT_EQ(result.names, "");
+  EXPECT_EQ(join_numbered("point", "Nr;X [mm];Y [mm]\n1;30;80\n1;100;60\n2;100;0\n2;0;0\n").rows, in_order);
+}
+
+TEST(NominalList, TheUserAssignsTheColumnOfTheNames) {
+  const std::vector<std::size_t> reversed = {3, 2, 1, 0};
+  const std::string list = "Station;X [mm];Y [mm]\n1;0;0\n2;100;0\n3;100;60\n4;30;80\n";
+  EXPECT_THROW(join_numbered("point", list), text::InputError);
+  const NominalTable result = join_numbered("point", list, {"point=Station"});
+  EXPECT_EQ(result.rows, reversed);
+  EXPECT_EQ(result.names, "point");
+}
+
 TEST(NominalList, IsJoinedByRowNumberWithoutNames) {
   NominalTable result;
   EXPECT_THAT(join("X [mm];Y [mm]\n0;0\n100;0\n100;60\n30;80\n", false, &result),

@@ -238,6 +238,19 @@ TEST(MeasurementLintOf, EveryKindOfReadingOfTheFormatsIsOne) {
   EXPECT_NE(in_one_line(alone.front()).find("no measured column (x y z"), std::string::npos);
 }
 
+/// Touches are readings: what is missing is in the machine file, not in the table.
+TEST(MeasurementLintOf, TouchesOfAMachineWithoutAnArtefactNameTheDeclaration) {
+  std::string errors;
+  for (const LintFinding& finding :
+       lint_measurement("X[mm],Y[mm],Z[mm],on\n1,2,-3,bed\n5,2,-3,bed\n", "s.csv", &machine()))
+    if (finding.weight == LintWeight::kError) errors += in_one_line(finding) + "\n";
+  EXPECT_EQ(
+      errors,
+      "s.csv:1: error: \"on\": the machine file has no <artefact>: this column is not read -- declare in "
+      "the machine file what the tool point touched (vernier set --artefact bed:TYPE, with plane, line, "
+      "point, sphere or cylinder as TYPE)\n");
+}
+
 TEST(MeasurementLintOf, RunsOfOneSignSayNothingAboutTheSign) {
   for (const LintFinding& finding : lint_measurement(two_runs(1), "s.csv", &machine()))
     EXPECT_EQ(finding.what.find("opposite sign"), std::string::npos) << in_one_line(finding);

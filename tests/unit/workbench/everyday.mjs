@@ -128,6 +128,12 @@ async function accepted(page) {
   await page.click('#do-export');
   await words(page, '#export-result', 'The machine was not measured with these files');
   assert.ok(existsSync(join(folder, 'heidenhain-long')));
+  // Or the machine works only where it was measured: the rule then holds.
+  await view(page, 'board');
+  await page.click('#measured-travel');
+  await chosen(page, 'long-travel.xml');
+  await words(page, '#safety-words', 'mark "disturbed" in the field "accept"');
+  assert.ok(!(await text(page, '#guide-hint')).includes('--'), await text(page, '#guide-hint'));
 }
 
 /** A part program with the correction, and the map in German. */
@@ -600,6 +606,7 @@ async function robot(page) {
   await unknownTool(page);
   await pointsAndPositions(page);
   await logWithoutUnits(page);
+  await numberedPointsOfARobot(page);
   await noReadingsYet(page);
   await jointsOfTheirOwn(
     page,
@@ -818,13 +825,51 @@ async function pointsOfAMill(page) {
     },
   ]);
   const numbered = '[data-of="numbered.txt"]';
-  await page.choose(`${numbered} select:has(option[value=tracker])`, 'tracker');
+  // Four columns of numbers can be a test along an axis too: the page asks with a button.
+  await page.click(`${numbered} #sheet-as-points`);
   await page.until(`document.querySelector('${numbered} #proposed-unit')`, 'the proposal for points without headings');
   assert.deepEqual(
     await page.evaluate(`[...document.querySelectorAll('${numbered} [aria-label^="name of column"]')].map((one) => one.value)`),
     ['point', 'x', 'y', 'z'],
   );
   assert.equal(await page.evaluate(`document.querySelector('${numbered} [data-option=skip]').value`), '1');
+}
+
+/** Points of a robot with numbers as names, below a title: they are no positions of joints, so that the page reads them as points at once. */
+async function numberedPointsOfARobot(page) {
+  await view(page, 'project');
+  await page.choose('#machine', 'arm-set.xml');
+  const rows = reflectorPoses()
+    .trim()
+    .split('\n')
+    .slice(1)
+    .map((line) => line.split(','));
+  await page.drop([
+    {
+      name: 'poses.txt',
+      text: `Punkt;${rows[0]
+        .slice(0, 6)
+        .map((_, k) => `A${k + 1}[deg]`)
+        .join(';')}\n${rows.map((row, i) => [i + 1, ...row.slice(0, 6)].join(';')).join('\n')}\n`,
+    },
+    {
+      name: 'zelle.txt',
+      text: `Roboter Zelle 4 Kalibrierung\n${rows
+        .map((row, i) => [i + 1, ...row.slice(6, 9)].join('  '))
+        .toReversed()
+        .join('\n')}\n`,
+    },
+  ]);
+  const own = '[data-of="zelle.txt"]';
+  await words(page, `${own} #where-it-stood`, 'Where did the machine stand at each point?');
+  assert.equal(await page.evaluate(`document.querySelector('${own} [data-option=skip]').value`), '1');
+  await page.type(`${own} [data-option=nominal]`, 'poses.txt');
+  await page.click(`${own} #do-import`);
+  await measured(page, 'zelle_read.csv');
+  // Joined by the numbers, not by the rows; and beside what was chosen before, with one press.
+  assert.ok(!(await text(page, own)).includes('joined by row number'), await text(page, own));
+  await page.click(`${own} #use-together`);
+  await page.until("document.getElementById('measurement').value.endsWith(' + zelle_read.csv')", 'both files');
 }
 
 /** The same as a controller and a tracker write them: no units, a decimal comma, the points in another order. */

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <pugixml.hpp>
 
 #include "tools/commands/command.h"
 #include "tools/create/machine_plan.h"
 #include "tools/effects/insertion.h"
+#include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
@@ -47,7 +49,7 @@ void run_exclude(const ExcludeArguments& arguments) {
 struct SetArguments {
   std::string machine, output, json;
   std::vector<std::string> values, artefacts;
-  bool reflector = false;
+  bool reflector = false, measured_travel = false;
 };
 
 /// The machine text with `lines` at the end of an element.
@@ -83,9 +85,38 @@ std::string with_artefacts(const std::string& text, const SetArguments& argument
   return with_lines(text, arguments.machine, "variables", lines);
 }
 
+/// Reduces the travel of each axis to the range in which the last fit measured it. Returns the axes that
+/// changed. An axis that stood still keeps its travel.
+std::vector<std::size_t> take_measured_travel(model::Machine& machine) {
+  if (!machine.fitted)
+    throw text::InputError({machine.file, 0}, "",
+                           "no fit wrote this machine file: it has no measured range (--measured-travel)");
+  std::vector<std::size_t> changed;
+  for (const model::FitRecord::Range& measured : machine.fitted->measured) {
+    const auto index = machine.find_axis(measured.name);
+    if (!index || !(measured.max > measured.min)) continue;
+    model::Axis& axis = machine.axes[*index];
+    const double low = std::max(measured.min, axis.min.value_or(measured.min)),
+                 high = std::min(measured.max, axis.max.value_or(measured.max));
+    if (!(high > low))
+      throw text::InputError(
+          {machine.file, axis.line}, axis.name,
+          fmt::format("the axis was measured from {:g} to {:g}, outside its travel: the rows "
+                      "are of another machine, or have another zero or unit",
+                      measured.min, measured.max));
+    if (axis.min == low && axis.max == high) continue;
+    axis.min = low;
+    axis.max = high;
+    changed.push_back(*index);
+  }
+  return changed;
+}
+
 void run_set(const SetArguments& arguments) {
-  if (arguments.values.empty() && arguments.artefacts.empty() && !arguments.reflector)
-    throw text::InputError("set: give a value (NAME=NUMBER), --artefact NAME:TYPE or --reflector");
+  if (arguments.values.empty() && arguments.artefacts.empty() && !arguments.reflector &&
+      !arguments.measured_travel)
+    throw text::InputError(
+        "set: give a value (NAME=NUMBER), --artefact NAME:TYPE, --reflector or --measured-travel");
   const std::string text =
       with_reflector(with_artefacts(text::read_file(arguments.machine), arguments), arguments);
   model::Machine machine = model::parse_machine(text, arguments.machine);
@@ -97,12 +128,25 @@ void run_set(const SetArguments& arguments) {
     values[word.substr(0, at)] = *value;
   }
   workbench::set_values(machine, values);
-  text::write_file(arguments.output, values.empty() ? text : model::update_machine_text(text, machine, true));
+  std::vector<std::size_t> travels;
+  if (arguments.measured_travel) travels = take_measured_travel(machine);
+  text::write_file(arguments.output, values.empty() && travels.empty()
+                                         ? text
+                                         : model::update_machine_text(text, machine, true));
   nlohmann::ordered_json json = {{"machine", arguments.output},
                                  {"values", values},
                                  {"artefacts", arguments.artefacts},
-                                 {"reflector", arguments.reflector}};
+                                 {"reflector", arguments.reflector},
+                                 {"travels", nlohmann::ordered_json::object()}};
+  for (const std::size_t index : travels)
+    json["travels"][machine.axes[index].name] = {*machine.axes[index].min, *machine.axes[index].max};
   write_json(arguments.json, json);
+  for (const std::size_t index : travels)
+    fmt::print(human_stream(arguments.json), "{}: travel from {:g} to {:g} {}, as measured\n",
+               machine.axes[index].name, *machine.axes[index].min, *machine.axes[index].max,
+               machine.axes[index].rotary ? "deg" : "mm");
+  if (arguments.measured_travel && travels.empty())
+    fmt::print(human_stream(arguments.json), "every axis was measured over its whole travel\n");
   for (const auto& [name, value] : values)
     fmt::print(human_stream(arguments.json), "{} = {:.10g}\n", name, value);
   for (const std::string& words : arguments.artefacts)
@@ -155,6 +199,10 @@ void register_set(CLI::App& vernier) {
   command->add_flag("--reflector", arguments->reflector,
                     "the readings are those of a reflector at an unknown place on the tool: declare this "
                     "place (ToolShift), which a fit estimates, and which is no error of the machine");
+  command->add_flag(
+      "--measured-travel", arguments->measured_travel,
+      "reduce the travel (min and max) of each axis to the range in which the last fit measured "
+      "it: the machine then corrects, and is judged, within this range");
   command->add_option("-o,--output", arguments->output, "the new machine file")
       ->type_name(kWrites)
       ->required();

@@ -250,7 +250,8 @@ void run_fit(const FitArguments& arguments) {
   if (!result.absurd.empty())
     throw text::LimitNotMet(result.absurd + "; nothing is written" + (tool.empty() ? "" : ". ") + tool);
   nlohmann::ordered_json json = results::fit_json(result, m);
-  for (const std::string& note : {tool, rows, other_zero_of_joint(machine, m, result)}) {
+  for (const std::string& note :
+       {tool, rows, other_zero_of_joint(machine, m, result), readings_of_one_weight(m)}) {
     if (note.empty()) continue;
     json["notes"].push_back(note);
     fmt::print(stderr, "note: {}\n", note);

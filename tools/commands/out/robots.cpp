@@ -61,10 +61,14 @@ void export_urdf(const ExchangeArguments& arguments) {
   const std::optional<exchange::TipLink> link = original
                                                     ? exchange::tip_link(text::read_file(arguments.machine))
                                                     : exchange::tool_link(machine, exchange::kToolLink);
-  if (link)
+  if (link && !machine.tool_shifts.empty()) {
     for (const std::string& one :
          exchange::tool_shift_places(machine, *link, original ? "the URDF" : "robot.urdf"))
       fmt::print(human_stream(arguments.json), "{}\n", one);
+    fmt::print(human_stream(arguments.json),
+               "the readings do not show where the flange ends: an error of the flange's length or offset is "
+               "in the place of the reflector; measure the place of a tool from the reflector\n");
+  }
   Json undetermined = Json::array();
   for (const exchange::UndeterminedJoint& one : file.undetermined)
     undetermined.push_back({{"joint", one.joint}, {"parameters", one.parameters}});

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <set>
+#include <sstream>
 #include <utility>
 
 #include "tools/format/columns.h"
@@ -58,41 +61,95 @@ bool has_words(const std::vector<std::string>& cells) {
                      [](const std::string& cell) { return !cell.empty() && !text::parse_number(cell); });
 }
 
-/// Row of the list for each point, by a column of names in both; empty: there is no such column.
-std::vector<std::size_t> rows_by_name(const ImportTable& points, const ListedRows& list, std::string& names) {
+/// True for the heading of a column with the names of points: "Punkt", "Pt. No.".
+bool names_points(std::string heading) {
+  static const std::set<std::string> kWords = {
+      "point", "pt",     "punkt",  "pkt",  "messpunkt", "name",    "id",        "nr",
+      "no",    "nummer", "number", "pose", "punktname", "punktnr", "pointname", "pointid"};
+  for (char& c : heading)
+    if (c == '.' || c == '-' || c == '_' || c == '#' || c == ':') c = ' ';
+  std::istringstream words(text::in_small_letters(heading));
+  std::string word;
+  bool all = false;
+  while (words >> word) {
+    if (!kWords.contains(word)) return false;
+    all = true;
+  }
+  return all;
+}
+
+/// A column of names of the points, and one of the list that can have the same names.
+struct NamesInBoth {
+  const ImportTable::Column& of_points;
+  std::size_t of_list = 0;
+  bool stated = false;   // the same heading, or the user's assignment
+  bool numbers = false;  // below two headings that name points: each file can count in its own way
+};
+
+std::vector<std::string> cells_of(const ListedRows& list, std::size_t column) {
+  std::vector<std::string> cells;
+  for (std::size_t i = 0; i < list.rows.size(); ++i) cells.push_back(list.cell(i, column));
+  return cells;
+}
+
+/// The pairs of columns that can have the names of the points in both files: with words (`numbers` false) or
+/// under the same heading, or with numbers below two headings that name points.
+std::vector<NamesInBoth> columns_of_names(const ImportTable& points, const ListedRows& list, bool numbers) {
+  std::vector<NamesInBoth> pairs;
   for (const ImportTable::Column& column : points.columns) {
     if (!column.unit.empty() || format::find_column(column.name) != nullptr) continue;
     for (std::size_t k = 0; k < list.reading.columns.size(); ++k) {
-      const sheet::Heading& heading = list.reading.table.headings[k];
-      const bool same = text::in_small_letters(heading.name) == text::in_small_letters(column.name);
-      std::vector<std::string> own;
-      for (std::size_t i = 0; i < list.rows.size(); ++i) own.push_back(list.cell(i, k));
-      // Numbers join only under the same heading; words may have another one in each file.
-      if (!same && !(has_words(own) && has_words(column.cells))) continue;
-      std::map<std::string, std::vector<std::size_t>> index;
-      for (std::size_t i = 0; i < own.size(); ++i) index[key_of(own[i])].push_back(i);
-      std::vector<std::size_t> rows;
-      std::size_t missing = column.cells.size(), found = 0;
-      for (std::size_t i = 0; i < column.cells.size(); ++i) {
-        const auto at = index.find(key_of(column.cells[i]));
-        if (at == index.end()) {
-          missing = std::min(missing, i);
-          continue;
-        }
-        if (at->second.size() > 1)
-          throw text::InputError(list.place(at->second[1]), own[at->second[1]], kPointTwice);
-        rows.push_back(at->second.front());
-        ++found;
-      }
-      if (missing == column.cells.size()) {
-        names = column.name;
-        return rows;
-      }
-      if (same || 2 * found > column.cells.size())
-        throw text::InputError({points.file, points.line[missing]}, column.cells[missing],
-                               fmt::format("the list of nominal positions ({}) has no point of this name",
-                                           list.reading.sheet.file));
+      const std::string& heading = list.reading.table.headings[k].name;
+      const bool stated = text::in_small_letters(heading) == text::in_small_letters(column.name) ||
+                          list.reading.columns[k].name == column.name;
+      const bool words = has_words(cells_of(list, k)) && has_words(column.cells);
+      if (numbers ? !stated && !words && names_points(column.name) && names_points(heading) : stated || words)
+        pairs.push_back({column, k, stated, numbers});
     }
+  }
+  return pairs;
+}
+
+/// The row of the list for each point; no value: the list has no row of this name, or several with this
+/// number.
+std::vector<std::optional<std::size_t>> rows_of_names(const NamesInBoth& both, const ListedRows& list) {
+  const std::vector<std::string> own = cells_of(list, both.of_list);
+  std::map<std::string, std::vector<std::size_t>> index;
+  for (std::size_t i = 0; i < own.size(); ++i) index[key_of(own[i])].push_back(i);
+  std::vector<std::optional<std::size_t>> rows;
+  for (const std::string& name : both.of_points.cells) {
+    const auto at = index.find(key_of(name));
+    const std::size_t n = at == index.end() ? 0 : at->second.size();
+    if (n > 1 && !both.numbers)
+      throw text::InputError(list.place(at->second[1]), own[at->second[1]], kPointTwice);
+    rows.push_back(n == 1 ? std::optional(at->second.front()) : std::nullopt);
+  }
+  return rows;
+}
+
+/// The rows if each point has one; empty: a name is missing.
+std::vector<std::size_t> complete(const std::vector<std::optional<std::size_t>>& found) {
+  std::vector<std::size_t> rows;
+  for (const std::optional<std::size_t>& row : found)
+    if (row) rows.push_back(*row);
+  return rows.size() == found.size() ? rows : std::vector<std::size_t>{};
+}
+
+/// Row of the list for each point, by a column of names in both; empty: there is no such column.
+std::vector<std::size_t> rows_by_name(const ImportTable& points, const ListedRows& list, std::string& names) {
+  for (const NamesInBoth& both : columns_of_names(points, list, false)) {
+    const std::vector<std::optional<std::size_t>> found = rows_of_names(both, list);
+    if (std::vector<std::size_t> rows = complete(found); !rows.empty()) {
+      names = both.of_points.name;
+      return rows;
+    }
+    const auto missing = std::find(found.begin(), found.end(), std::nullopt);
+    const auto at = static_cast<std::size_t>(missing - found.begin());
+    const auto without = static_cast<std::size_t>(std::count(found.begin(), found.end(), std::nullopt));
+    if (both.stated || 2 * without < found.size())
+      throw text::InputError({points.file, points.line[at]}, both.of_points.cells[at],
+                             fmt::format("the list of nominal positions ({}) has no point of this name",
+                                         list.reading.sheet.file));
   }
   return {};
 }
@@ -134,6 +191,10 @@ ToolPlace place_of(const model::Machine& machine) {
   return machine.tool_shifts.empty() ? ToolPlace::kOfTheMachine : ToolPlace::kUnknown;
 }
 
+Eigen::VectorXd distances(const ImportTable& table, const model::Machine& machine) {
+  return distances_from_nominal(table, machine, place_of(machine));
+}
+
 /// Row of the list for each point, where points are missing and nothing names them; empty: the distances do
 /// not tell.
 std::vector<std::size_t> rows_by_distances(const ImportTable& points, const ListedRows& list,
@@ -154,19 +215,40 @@ struct JoinedRows {
   bool by_distances = false;
 };
 
+/// Row of the list for each point, where no name joins them; empty: neither numbers nor distances tell.
+std::vector<std::size_t> rows_without_names(const ImportTable& points, const ListedRows& list,
+                                            const model::Machine& machine, double tolerance_mm) {
+  if (points.line.size() > list.rows.size()) return {};
+  if (points.line.size() < list.rows.size()) return rows_by_distances(points, list, machine, tolerance_mm);
+  std::vector<std::size_t> rows(list.rows.size());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  return rows;
+}
+
+/// Largest distance of a point from its nominal position, mm; 0: the points cannot be compared.
+double largest_distance_mm(const ImportTable& points, const ListedRows& list,
+                           const std::vector<std::size_t>& rows, const model::Machine& machine) {
+  const Eigen::VectorXd off = distances(joined(points, list, rows, machine), machine);
+  return off.size() == 0 ? 0 : off.maxCoeff();
+}
+
 JoinedRows rows_of_points(const ImportTable& points, const ListedRows& list, const model::Machine& machine,
                           double tolerance_mm) {
-  JoinedRows joined;
-  joined.rows = rows_by_name(points, list, joined.names);
-  if (!joined.names.empty()) return joined;
-  if (points.line.size() == list.rows.size()) {
-    for (std::size_t i = 0; i < list.rows.size(); ++i) joined.rows.push_back(i);
-    return joined;
+  JoinedRows result;
+  result.rows = rows_by_name(points, list, result.names);
+  if (!result.names.empty()) return result;
+  result.rows = rows_without_names(points, list, machine, tolerance_mm);
+  result.by_distances = points.line.size() != list.rows.size();
+  // Both files can count the points each in its own way: the distances decide.
+  for (const NamesInBoth& both : columns_of_names(points, list, true)) {
+    const std::vector<std::size_t> rows = complete(rows_of_names(both, list));
+    if (rows.empty() || (!result.rows.empty() && largest_distance_mm(points, list, rows, machine) >
+                                                     largest_distance_mm(points, list, result.rows, machine)))
+      continue;
+    return {rows, both.of_points.name, false};
   }
-  joined.by_distances = true;
   const bool lost = points.line.size() < list.rows.size();
-  if (lost) joined.rows = rows_by_distances(points, list, machine, tolerance_mm);
-  if (joined.rows.empty())
+  if (result.rows.empty())
     throw text::InputError(
         list.heading(), "",
         fmt::format(
@@ -177,14 +259,10 @@ JoinedRows rows_of_points(const ImportTable& points, const ListedRows& list, con
             lost ? "; the distances between the points do not show which positions have no point" : "",
             lost ? "omit the positions without a point from the list"
                  : "omit the points without a position from their file"));
-  return joined;
+  return result;
 }
 
 constexpr double kTolerances = 3;  // of a point from its position, as in pair_points
-
-Eigen::VectorXd distances(const ImportTable& table, const model::Machine& machine) {
-  return distances_from_nominal(table, machine, place_of(machine));
-}
 
 /// Largest distance of a point from its nominal position, mm, if the joints of the list are in `unit`; no
 /// value: the points cannot be compared.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
+import { refusedRule } from './safety.js';
 import { on, store } from './store.js';
 
 const um = (value) => `${number(value, 3)} µm`;
@@ -26,14 +27,20 @@ function afterDiagnosis() {
 }
 
 /** The correction of a model that is not complete can be safe: the rules do not judge what it leaves. */
-const aboutSafety = () =>
-  (isUnexplained() ? 'The model is not complete: the correction leaves the error that no known effect explains. ' : '') +
-  (store.safety?.refusal || 'The rules of the safety sheet say whether the correction may run.');
+function aboutSafety() {
+  const [rule] = refusedRule(store.safety);
+  return (
+    (isUnexplained() ? 'The model is not complete: the correction leaves the error that no known effect explains. ' : '') +
+    (rule
+      ? `${rule.replace(/[;.]$/, '')}. The page says what to do about it.`
+      : 'The rules of the safety sheet say whether the correction may run.')
+  );
+}
 
 /** The files for a control are of the machine that is chosen; a fit after them makes another machine. */
 const isExported = () => store.exported !== '' && store.exported === store.machine;
 
-/** The way from a measurement to a board: [id, name, view, is it done?, what to do]. */
+/** The way from a measurement to a board: [id, name, view, is it done?, what to do: words, or words and links]. */
 const kPath = [
   ['data', 'Data', 'project', () => store.measurements.length > 0, () => 'Drop what was measured, in whatever file it came.'],
   ['model', 'Model', 'project', () => Boolean(store.machine), () => 'Drop the machine file, or make one.'],
@@ -58,7 +65,11 @@ const kPath = [
     'Upload or export',
     'board',
     () => store.uploaded || isExported(),
-    () => 'With a board: compile, upload on trial, watch, confirm. Without a board: Export writes the files for the control.',
+    () => [
+      'With a board: compile, upload on trial, watch, confirm. Without a board: ',
+      el('a', { href: '#export' }, 'Export'),
+      ' writes the files for the control.',
+    ],
   ],
 ];
 
@@ -107,7 +118,7 @@ export function guide() {
       ),
     );
     const written = `The files for the control are written${store.leftOut.length ? `, without: ${store.leftOut.join('; ')}` : ''}.`;
-    hint.textContent = next ? next[4]() : store.uploaded ? 'The correction runs.' : written;
+    hint.replaceChildren(...[next ? next[4]() : store.uploaded ? 'The correction runs.' : written].flat());
   };
   for (const event of ['project', 'rows', 'compared', 'diagnosed', 'steps', 'safety', 'uploaded', 'view']) on(event, draw);
   draw();

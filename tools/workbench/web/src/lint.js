@@ -18,6 +18,7 @@ const words = (said) =>
       /vernier import table \S+ --deviation \S+ … adds/,
       'under Project, "read differently" beside the file with "deviation of" adds',
     )
+    .replace(/ \(vernier set --artefact ([^,)]+),/, ' (make a new machine file with $1 in the field "artefact",')
     .replace(/ \(--fix\)/, ' (the field "fix" of the options of fit)');
 
 const item = (one) =>

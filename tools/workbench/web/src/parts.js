@@ -40,11 +40,15 @@ const kTool = /State the tool \(vernier new --tool\), or fit it: --free ([\w,]+)
 const toolWords = (whole, names) =>
   `State the tool in the field "tool" of a new machine file, or fit it: write ${names} into the field "free" of the options of fit`;
 
+/** The button beside the rules of the safety sheet. */
+export const kMeasuredTravel = 'Reduce the travel to the measured range';
+
 /** Notes and explanations of a result in the words of the page. */
 export const programWords = (words) =>
   words
     ?.replace(kTool, toolWords)
     .replace(/: vernier set \S+ --reflector -o NEW\.xml declares it/g, ': press "Declare the reflector"')
+    .replace(/ \(vernier set --measured-travel\)/g, ` (press "${kMeasuredTravel}" under "Safe to run?")`)
     .replace(/declare it in the machine file \(vernier set MACHINE --reflector\)/g, `press "${kReflector}"`)
     .replace(
       / \(option --directions from-order of vernier import\)/g,

@@ -27,12 +27,30 @@ function inPlaceOf(replaced) {
   };
 }
 
+/** Chooses measurements in the place of others, which one press chooses again: two instruments can have measured one machine. */
+async function chooseInstead(measurements, box) {
+  const before = store.measurements.filter((one) => !measurements.includes(one));
+  await choose(store.machine, measurements);
+  if (!before.length) return;
+  const together = () => {
+    note.remove();
+    return choose(store.machine, [...new Set([...before, ...store.measurements])]);
+  };
+  const note = el(
+    'div',
+    { class: 'controls chosen-instead' },
+    el('span', { class: 'note', role: 'status' }, `Chosen in the place of ${before.join(', ')}.`),
+    button('Use all of them together', together, { class: 'quiet', id: 'use-together' }),
+  );
+  box.append(note);
+}
+
 /**
  * Makes a measurement of a file of the project, as its kind asks for. `beside`: measurements to use with it; `again`: a table is
  * shown although it can be read without help, because it was read before, and may have another sheet to read.
  */
 async function importFile(name, kind, box, repair, { beside, again }) {
-  const done = (output) => choose(store.machine, [...beside, output]);
+  const done = (output) => chooseInstead([...beside, output], box);
   if (kind === 'printer') return importInstrument(box, 'printer', name, done);
   if (kind === 'trace') return importInstrument(box, 'ballbar-trace', name, done);
   if (kind === 'instrument') {
@@ -50,7 +68,7 @@ async function importFile(name, kind, box, repair, { beside, again }) {
     (outputs) => {
       if (later) return later(outputs);
       later = inPlaceOf(outputs);
-      return choose(store.machine, [...beside, ...outputs]);
+      return chooseInstead([...beside, ...outputs], box);
     },
     again,
     again ? importThatMade(readInto(name)[0]) : null,
@@ -127,7 +145,7 @@ async function machineOfRobot(name, ask) {
 async function use(name, kind, { box, repair, ask, beside = [], again = false }) {
   if (kind === 'machine') return choose(name, store.measurements);
   if (kind === 'robot') return machineOfRobot(name, ask);
-  if (kind === 'measurement') return choose(store.machine, [...beside, name]);
+  if (kind === 'measurement') return chooseInstead([...beside, name], box);
   return importFile(name, kind, box, repair, { beside, again });
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
 import { number, printed } from '../../../report/web/src/data.js';
-import { getJson } from './api.js';
-import { guarded, pageWords, panel } from './parts.js';
+import { freeName, getJson, run } from './api.js';
+import { button, guarded, kMeasuredTravel, pageWords, panel } from './parts.js';
+import { choose } from './rows.js';
 import { emit, on, store } from './store.js';
 
 /** The rules in words for the person at the machine (tools/docs/safety.md has their reasons). */
@@ -71,6 +72,26 @@ function reasonOf(unknown) {
   return `${unknown.map((rule) => kWhyUnknown[rule] ?? rule).join(', ')}.`;
 }
 
+/** Why a machine is not safe to run: [the rule that does not hold, what to do about it]; empty words: it is, or is not known. */
+export function refusedRule(sheet) {
+  const refusal = sheet && !sheet.ok ? pageWords(sheet.refusal, 'vernier compile') : '';
+  const [rule, ...remedy] = refusal.replace(/^n/, 'N').split(/(?<=;) /);
+  return [rule, remedy.join(' ')];
+}
+
+/** A new machine file that works only where it was measured; null: it does, or the rule is accepted. */
+function measuredTravel(rules, error) {
+  const rule = rules.find((one) => one.rule === 'measured-range');
+  if (!rule || rule.value === null || rule.ok || rule.accepted) return null;
+  const reduce = () =>
+    guarded(error, async () => {
+      const output = freeName(`${store.machine.replace(/\.[^.]*$/, '')}-travel`, '.xml');
+      await run({ command: 'set', machine: store.machine, 'measured-travel': true, output });
+      await choose(output, store.measurements);
+    });
+  return el('div', { class: 'controls' }, button(kMeasuredTravel, reduce, { class: 'quiet', id: 'measured-travel' }));
+}
+
 /** The sheet of the machine that is chosen, before anything is compiled; looked at whenever this view is. */
 export function safetyPanel() {
   const box = el('div', { class: 'safety-room' }),
@@ -91,13 +112,12 @@ export function safetyPanel() {
     const holds = unknown.length
       ? `What is known holds; ${unknown.length} of ${sheet.rules.length} rules cannot be evaluated: ${reasonOf(unknown)}`
       : 'Every rule holds.';
-    const refusal = sheet ? pageWords(sheet.refusal, 'vernier compile') : '';
     // The heading is the rule that does not hold; what to do about it is a text below the heading.
-    const [rule, ...remedy] = (sheet ? (sheet.ok ? holds : refusal.replace(/^n/, 'N')) : '').split(/(?<=;) /);
-    words.replaceChildren(rule, ...(remedy.length ? [' ', el('span', { class: 'remedy' }, remedy.join(' '))] : []));
+    const [rule, remedy] = refusedRule(sheet);
+    words.replaceChildren(sheet?.ok ? holds : rule, ...(remedy ? [' ', el('span', { class: 'remedy' }, remedy)] : []));
     words.classList.toggle('error', Boolean(sheet) && !sheet.ok);
     words.dataset.ok = sheet ? sheet.ok : '';
-    box.replaceChildren(...(sheet ? [safetyTable(sheet.rules)] : []));
+    box.replaceChildren(...(sheet ? [measuredTravel(sheet.rules, error), safetyTable(sheet.rules)].filter(Boolean) : []));
   }
   on('rows', () => {
     store.safety = null;

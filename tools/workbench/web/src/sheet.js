@@ -27,8 +27,14 @@ const kPointName = /^(name|point|punkt|punktname|id)$/i;
 /** The columns of points without headings, in the order x, y, z; before them their names, if the first column has words. */
 function pointsWithoutHeadings(preview) {
   const isNumber = (cell) => cell.trim() !== '' && Number.isFinite(Number(cell.trim().replace(',', '.')));
-  // Names that are numbers count the points.
-  const counts = preview.rows.length > 1 && preview.rows.every((row, i) => Number(row[0]) === Number(preview.rows[0][0]) + i);
+  // Names that are numbers count the points, in whatever order; coordinates have decimals.
+  const whole = (cell) => /^\d+$/.test(cell.trim()),
+    names = new Set(preview.rows.map((row) => row[0].trim()));
+  const counts =
+    names.size > 1 &&
+    names.size === preview.rows.length &&
+    preview.rows.every((row) => whole(row[0])) &&
+    preview.rows.some((row) => row.slice(1).some((cell) => !whole(cell)));
   const first = preview.rows.every((row) => isNumber(row[0])) && !(preview.columns.length === 4 && counts) ? 0 : 1;
   const right = preview.columns.length === first + 3 && preview.rows.every((row) => row.slice(first).every(isNumber));
   if (!right) return [];
@@ -55,6 +61,9 @@ function pointsOfATracker(preview, axes, stated = false) {
     ...names.slice(0, 1).map(([k]) => [k, { use: 'column', name: 'point', unit: '' }]),
   ];
 }
+
+/** Of joints alone, and not of three: four columns of numbers can be neither its positions nor readings along an axis. */
+const isRobot = (axes) => axes.length > 3 && axes.every(({ unit }) => unit === 'deg');
 
 function likely(preview, axes) {
   const names = preview.columns.map((one) => one.name);
@@ -442,6 +451,7 @@ export async function importSheet(box, name, handOver, asks = false, earlier = n
         now.message ? el('div', { class: 'controls', id: 'sheet-confirmations' }, confirmations(now)) : null,
         now.points && kind === 'table' ? pointFields(now.points, points, () => draw()) : null,
         now.points ? null : byAxes(now),
+        maybePoints(now),
         ofRobot(now),
         kind === 'tracker' && axes.length && !now.columns.some((one) => axes.some((axis) => axis.name === one.name))
           ? el('p', { class: 'note', id: 'where-it-stood' }, kWhereItStood)
@@ -499,18 +509,41 @@ export async function importSheet(box, name, handOver, asks = false, earlier = n
     );
     return null;
   }
-  /** Shows the columns as points of a tracker; words above them that name no coordinate are a title, and no headings. */
-  async function asPoints(now) {
-    propose(now, true);
+  /**
+   * Reads the columns as points of a tracker: words above them that name no coordinate are a title, and no headings. False: they
+   * are no such points, and nothing is changed. `stated`: as for pointsOfATracker.
+   */
+  async function pointsAreFound(now, stated) {
+    propose(now, stated);
     const known = ({ name: word }) => /^[xyz]$/i.test(word) || kTracker.has(word) || axes.some((axis) => axis.name === word);
     if (!said.size && !now.workbook && now.heading_line != null && !now.columns.some(known)) {
+      const before = kind;
+      kind = 'tracker';
       forms.tracker.fill({ skip: [String(now.heading_line)] });
-      const below = await guarded(error, ask);
-      if (below) propose(below, true);
-      if (!said.size) forms.tracker.fill({ skip: [''] });
+      const below = await ask().catch(() => null);
+      if (below) propose(below, stated);
+      if (!said.size) {
+        kind = before;
+        forms.tracker.fill({ skip: [''] });
+      }
     }
-    return draw(said.size ? null : now);
+    return said.size > 0;
   }
+  /** Shows the columns as points of a tracker. */
+  async function asPoints(now) {
+    kind = 'tracker';
+    return draw((await pointsAreFound(now, true)) ? null : now);
+  }
+  /** What a table that is not understood can be beside positions of the axes. */
+  const maybePoints = (now) =>
+    now.message && kind === 'table' && axes.length && !now.workbook && !now.robot?.length && !now.points
+      ? el(
+          'div',
+          { class: 'controls' },
+          'If these are points that an instrument measured:',
+          button('Read them as points of a laser tracker', () => asPoints(now), { class: 'quiet', id: 'sheet-as-points' }),
+        )
+      : null;
   /** What the columns of a tracker's points probably are. */
   function propose(preview, stated) {
     for (const [k, one] of pointsOfATracker(preview, axes, stated)) {
@@ -565,6 +598,7 @@ export async function importSheet(box, name, handOver, asks = false, earlier = n
     else {
       kind = likely(first, axes);
       if (kind === 'tracker') propose(first);
+      else if (kind === 'table' && first.message !== null && isRobot(axes) && (await pointsAreFound(first, false))) kind = 'tracker';
     }
     if (said.size) return draw();
     return first.message === null && kind === 'table' && !asks ? doImport(first) : draw(first);
