@@ -434,6 +434,26 @@ TEST_F(ImportRemedies, TheDirectionsOfPointsInAnotherOrderAreThoseOfTheList) {
               testing::AllOf(HasSubstr("P4,120,10,0,b,1,-1\n"), HasSubstr("P3,50,20,0,b,0,0\n")));
 }
 
+// The numbers of the points, in no order, are their names and no coordinate; a stated u changes nothing in
+// the call.
+TEST_F(ImportRemedies, NumbersOfPointsInAnyOrderAreTheirNames) {
+  text::write_file(folder + "/points.txt",
+                   "Messung Halle 2\n3 50.01 20.2 0.1\n1 0.2 0.11 0.3\n4 120.3 10.2 0.4\n2 100.4 0.5 0.2\n");
+  text::write_file(folder + "/list.csv", "Punkt;X[mm];Y[mm]\n1;0;0\n2;100;0\n3;50;20\n4;120;10\n");
+  ASSERT_EQ(
+      run("vernier import tracker points.txt --nominal list.csv --machine m.xml --set 'u[um]=2' -o read.csv"),
+      1)
+      << said;
+  EXPECT_THAT(said,
+              testing::AllOf(HasSubstr("--column 1=point --column \"2=x[mm]\" --column \"3=y[mm]\" --column "
+                                       "\"4=z[mm]\""),
+                             HasSubstr("--set \"u[um]=2\"")));
+  const std::string call = said.substr(said.rfind("give: ") + std::string("give: ").size());
+  ASSERT_EQ(run(call.substr(0, call.find('\n'))), 0) << said;
+  EXPECT_THAT(said, HasSubstr("joined by the names in point"));
+  EXPECT_THAT(text::read_file(folder + "/read.csv"), HasSubstr("50,20,3,50.01,20.2,0.1,2\n"));
+}
+
 TEST_F(ImportRemedies, OfATrackerReadTheFileThatIsThere) {
   text::write_file(folder + "/pts.txt", "// SA\nP1, 0.01, 400, 0\nP2, 100, 400.01, 0\nP3, 200, 400, 0.01\n");
   const std::string call =

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <memory>
 #include <set>
@@ -284,7 +285,9 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
   map.format.header = importer::has_header(map);
   const std::string title = omit_title(text, arguments.file, map.format);
   if (!title.empty()) survey.notes.push_back(title);
-  if (map.columns.empty()) refuse_without_columns(arguments, text, map, kind, title);
+  const bool only_constants = std::all_of(map.columns.begin(), map.columns.end(),
+                                          [](const auto& column) { return column.source.empty(); });
+  if (only_constants) refuse_without_columns(arguments, text, map, kind, title);
   table = importer::mapped_table(text, arguments.file, map);
   if (kind_name == "tracker") {
     importer::finish_tracker(table);

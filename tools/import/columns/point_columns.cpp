@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "tools/format/columns.h"
 #include "tools/format/units.h"
@@ -72,6 +73,19 @@ class PointList {
     }
     return true;
   }
+  /// Numbers of the points in any order: whole and different, and other columns have decimals.
+  bool names_points(std::size_t k) const {
+    std::set<std::size_t> seen;
+    for (const std::vector<std::string>& row : read_.rows) {
+      const auto number = text::parse_count(row[k]);
+      if (!number || !seen.insert(*number).second) return false;
+    }
+    return std::any_of(read_.rows.begin(), read_.rows.end(), [&](const auto& row) {
+      for (std::size_t other = 0; other < row.size(); ++other)
+        if (other != k && number_in(row[other]) && !text::parse_count(row[other])) return true;
+      return false;
+    });
+  }
   /// The word of --column that makes a column a coordinate; its unit is that of the heading, or mm.
   std::string word(std::size_t k, const std::string& coordinate) const {
     const std::string unit = heading(k).unit;
@@ -109,12 +123,15 @@ PointColumns point_columns(const std::string& text, const std::string& file, con
     if (is_coordinate(text::in_small_letters(list.heading(k).name))) named.push_back(k);
   }
   found.by_order = named.size() != kCoordinates;
-  if (found.by_order && numbers.size() > kCoordinates && list.counts(numbers.front()))
-    numbers.erase(numbers.begin());
+  const std::size_t first = numbers.empty() ? 0 : numbers.front();
+  const bool numbered =
+      found.by_order && numbers.size() > kCoordinates &&
+      (list.counts(first) || (numbers.size() == kCoordinates + 1 && list.names_points(first)));
+  if (numbered) numbers.erase(numbers.begin());
   std::vector<std::size_t>& point = found.by_order ? numbers : named;
   if (point.size() < kCoordinates) return found;
   point.resize(kCoordinates);
-  if (!list.has_numbers(0)) found.words.push_back(list.source(0) + "=point");
+  if (numbered || !list.has_numbers(0)) found.words.push_back(list.source(numbered ? first : 0) + "=point");
   for (std::size_t i = 0; i < kCoordinates; ++i) {
     const std::string coordinate = found.by_order ? std::string(format::columns::kPoint[i])
                                                   : text::in_small_letters(list.heading(point[i]).name);
