@@ -154,10 +154,9 @@ std::string readings_of_one_weight(const model::Measurement& m) {
   if (std::all_of(forms.begin(), forms.end(), [&](const auto& one) { return one == forms.front(); }))
     return {};
   return fmt::format(
-      "the readings of {} have no standard uncertainty (u), and so all of them have the same weight: state u "
-      "of "
-      "each file, such as 0.02 mm of a caliper (import table: --set \"u[mm]=0.02\"), so that the less exact "
-      "instrument does not hide what the other one measured",
+      "the readings of {} have no standard uncertainty (u), and so all of them have the same weight: state "
+      "u of each file, such as 0.02 mm of a caliper (import table: --set \"u[mm]=0.02\"), so that the less "
+      "exact instrument does not hide what the other one measured",
       text::joined(m.files, ", "));
 }
 

@@ -29,13 +29,12 @@ void export_urdf(const ExchangeArguments& arguments) {
   std::vector<exchange::LeftOut> left;
   if (file.worst_um > exchange::kNothing_um)
     left.push_back({"effect on the tool point of errors that depend on the joint angles", file.worst_um});
-  fmt::print(
-      human_stream(arguments.json),
-      "difference from the machine file at {} poses in the {} ranges of the axes: tool point rms {:.3g} um, "
-      "up to {:.3g} um, tool direction up to {:.3g} urad; without the calibration (the nominal arm, "
-      "with the best base and tool point): rms {:.3g} um\n",
-      file.positions, file.measured ? "measured" : "declared", file.rms_um, file.worst_um, file.worst_urad,
-      file.rms_nominal_um);
+  fmt::print(human_stream(arguments.json),
+             "difference from the machine file at {} poses in the {} ranges of the axes: distance of the "
+             "tool point rms {:.3g} um, up to {:.3g} um, tool direction up to {:.3g} urad; without the "
+             "calibration (the nominal arm, with the best base and tool point): rms {:.3g} um\n",
+             file.positions, file.measured ? "measured" : "declared", file.rms_um, file.worst_um,
+             file.worst_urad, file.rms_nominal_um);
   Json tip;
   if (!file.original) {
     fmt::print(
