@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/lint/lint_table.h"
 
-#include <algorithm>
 #include <cctype>
 #include <deque>
 
@@ -49,10 +48,8 @@ bool LintNames::is_of_axis(const std::string& name, format::AxisQuantity quantit
   return column && column->quantity == quantity;
 }
 
-bool LintNames::has_undeclared_touches(const LintTable& table) const {
-  const LintColumn* const on = table.find(format::columns::kOn);
-  return on != nullptr && machine_ != nullptr && machine_->artefacts.empty() &&
-         std::any_of(on->cell.begin(), on->cell.end(), [](const std::string& cell) { return !cell.empty(); });
+bool LintNames::lacks_artefact_of(const LintTable& table) const {
+  return machine_ != nullptr && machine_->artefacts.empty() && table.find(format::columns::kOn) != nullptr;
 }
 
 std::string LintNames::needed_unit(const std::string& name) const {

@@ -49,8 +49,8 @@ class LintNames {
   }
   /// True if a column of this table is a reading (format::is_reading).
   bool is_reading(const LintTable& table, const LintColumn& column) const;
-  /// True for rows with the name of a touched object, of a machine that declares none (column `on`).
-  bool has_undeclared_touches(const LintTable& table) const;
+  /// True for a table with the column of touched objects (`on`), of a machine that declares none.
+  bool lacks_artefact_of(const LintTable& table) const;
   /// Returns the base unit that a column with this name must have; "" for no unit, and "?" for any unit.
   std::string needed_unit(const std::string& name) const;
   /// Returns all names that have a meaning in a measurement file.

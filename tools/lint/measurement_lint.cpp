@@ -255,7 +255,7 @@ class Look {
   void look_for_columns() {
     const bool any = std::any_of(table_.columns.begin(), table_.columns.end(),
                                  [&](const LintColumn& c) { return names_.is_reading(table_, c); });
-    if (!any && !names_.has_undeclared_touches(table_))
+    if (!any && !names_.lacks_artefact_of(table_))
       findings_.error(table_.header_line, "", "no measured column (" + format::reading_column_names() + ")",
                       "small letters are measured values, capitals commanded positions; if the readings "
                       "have other names, assign the columns: " +

@@ -180,8 +180,16 @@ class Meaning {
                        "no standard uncertainty u in the file: the fit estimates the noise from repeated "
                        "rows, or from the residual",
                        "a column u[um], the instrument's");
-    if (!any_reading_ && !names_.has_undeclared_touches(table_))
+    if (!any_reading_ && !names_undeclared_touches())
       findings_.error(table_.header_line, "", "no row has a reading", "is this a template without readings?");
+  }
+
+  static bool is_filled(const std::string& cell) { return !cell.empty(); }
+
+  /// True for rows with the name of a touched object, of a machine that declares none.
+  bool names_undeclared_touches() const {
+    const LintColumn* const on = table_.find(columns::kOn);
+    return names_.lacks_artefact_of(table_) && std::any_of(on->cell.begin(), on->cell.end(), is_filled);
   }
 
   /// Labels of unknown points, and names of artefacts.
@@ -189,18 +197,16 @@ class Meaning {
     const LintColumn *same = table_.find(columns::kSame), *on = table_.find(columns::kOn);
     if (same != nullptr && names_.is_reading(table_, *same)) look_at_points(*same);
     if (on == nullptr) return;
-    if (names_.has_undeclared_touches(table_)) {
+    if (names_undeclared_touches()) {
       // Without another reading, no command can read the file.
       const LintWeight weight = any_reading_ ? LintWeight::kWarning : LintWeight::kError;
-      const std::string name = *std::find_if(on->cell.begin(), on->cell.end(),
-                                             [](const std::string& cell) { return !cell.empty(); });
       findings_.add(weight, table_.header_line, columns::kOn,
                     "the machine file has no <artefact>: this column is not read",
                     fmt::format("declare in the machine file what the tool point touched (vernier set "
                                 "--artefact {}:TYPE, with plane, line, point, sphere or cylinder as TYPE)",
-                                name));
+                                *std::find_if(on->cell.begin(), on->cell.end(), is_filled)));
     }
-    if (machine_ != nullptr && machine_->artefacts.empty()) return;
+    if (names_.lacks_artefact_of(table_)) return;
     if (names_.is_reading(table_, *on)) look_at_artefacts(*on);
     for (std::size_t row = 0; same != nullptr && row < table_.rows.size(); ++row)
       if (!same->cell[row].empty() && !on->cell[row].empty())

@@ -296,6 +296,12 @@ TEST_F(ProbedBed, TheFitThatAnExportOffersMeasuresTheSquarenessAndBothScales) {
     EXPECT_NEAR(steps, number("square/vernier_steppers.cfg", "rotation_distance", axis), 1e-4);
     EXPECT_NEAR(steps / 40, axis == 0 ? 1.0022 : 0.9988, 2 * kReadings);
   }
+  // Without the present setting no file can have the scales, and the command says what is missing.
+  const std::string way_on =
+      "measured): state the present rotation_distance of X, Y and Z with --steps X,Y,Z";
+  EXPECT_EQ(said.find(way_on), std::string::npos) << said;
+  ASSERT_EQ(run("vernier export klipper again.xml -o without --touches bed.csv"), 0) << said;
+  EXPECT_THAT(said, testing::AllOf(HasSubstr("scale X (2"), HasSubstr("scale Y (-1"), HasSubstr(way_on)));
 }
 
 TEST_F(ProbedBed, HeightsAtOneTemperatureAreThoseOfOneSurvey) {

@@ -34,6 +34,8 @@ namespace {
 
 using exchange::Firmware;
 
+constexpr double kUmPerM = 1e6;
+
 struct PrinterArguments {
   ExchangeArguments common;
   std::string steps, bed, profile, zero;
@@ -171,7 +173,6 @@ std::string remedy_of_unmeasured(const FitOfSquare& fit) {
 /// Skews and steps that the files do not contain, because the last fit did not measure them.
 void add_unmeasured(std::vector<exchange::LeftOut>& left, const exchange::PrinterCorrection& correction) {
   for (const exchange::UnmeasuredPart& part : correction.unmeasured) {
-    constexpr double kUmPerM = 1e6;
     const bool skew = part.name.size() == 2;
     const std::string what = fmt::format("{} {}", skew ? "squareness" : "scale", part.name);
     if (part.um <= exchange::kNothing_um) {
@@ -388,7 +389,6 @@ void print_errors(const PrinterArguments& arguments, const PrinterModel& model,
 
 /// The squareness and the scales that the files contain.
 void print_straight_parts(std::FILE* out, const exchange::PrinterCorrection& correction) {
-  constexpr double kUmPerM = 1e6;
   const std::array<std::pair<const char*, double>, 3> skews = {
       {{"XY", correction.xy}, {"XZ", correction.xz}, {"YZ", correction.yz}}};
   for (const auto& [name, tangent] : skews)
@@ -438,6 +438,27 @@ void require_safe_printer(const model::Machine& machine, const ExchangeArguments
   }
 }
 
+/// Scales that the last fit measured, and that the files do not contain because the user did not state what
+/// the printer has now.
+void add_scales_without_steps(std::vector<exchange::LeftOut>& left, const PrinterModel& model,
+                              const exchange::ThreeAxes& axes, const exchange::PrinterFeatures& features,
+                              const char* setting, double tolerance_um) {
+  if (features.steps) return;
+  exchange::PrinterFeatures only_steps;
+  only_steps.skew = only_steps.mesh = false;
+  only_steps.steps = true;
+  only_steps.size_known = features.size_known;
+  const exchange::PrinterCorrection scales =
+      exchange::printer_correction(model.of_heights, axes, only_steps, model.at, tolerance_um, std::nullopt,
+                                   model.follows_touches ? &model.fitted : nullptr);
+  for (std::size_t i = 0; i < scales.steps.size(); ++i)
+    if (scales.steps[i] != 1)
+      left.push_back({fmt::format("scale {} ({:.4g} um/m, measured): state the present {} of X, Y and Z with "
+                                  "--steps X,Y,Z, and the files correct it",
+                                  exchange::kLetters[i], -(scales.steps[i] - 1) * kUmPerM, setting),
+                      maths::kUmPerMm * (axes.high[i] - axes.low[i]) * std::abs(scales.steps[i] - 1)});
+}
+
 void export_printer(const PrinterArguments& arguments, Firmware firmware, const char* name) {
   const ExchangeArguments& common = arguments.common;
   const exchange::PresentSetting present = present_of(arguments);
@@ -477,6 +498,9 @@ void export_printer(const PrinterArguments& arguments, Firmware firmware, const 
       left.push_back(std::move(one));
   }
   add_unmeasured(left, correction);
+  add_scales_without_steps(left, model, axes, features,
+                           firmware == Firmware::kKlipper ? "rotation_distance" : "steps per mm",
+                           common.tolerance_um);
   if (unmeasured_heights) {
     left.push_back(
         {"heights of the bed: not measured, the files contain no heights (--touches FILE gives the "

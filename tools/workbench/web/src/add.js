@@ -25,6 +25,7 @@ function note(label, machine, result) {
 /** Fits a machine into a new file; what came out is a step. */
 async function fitInto(machine, label, options = {}) {
   const output = freeName(`${unfitted(machine)}-fitted`, '.xml');
+  document.getElementById('fit-notes').replaceChildren(); // those of another fit
   const { result } = await run({ command: 'fit', ...measured(), machine, ...options, output });
   note(label, output, result);
   await choose(output, store.measurements);

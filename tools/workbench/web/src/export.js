@@ -23,15 +23,23 @@ const fileLink = (name) =>
     name,
   );
 
+/** What is not in the files, with the fields of this page. */
+const onPage = (what) =>
+  what
+    .replace(/with --steps X,Y,Z/g, 'in the field "steps" (such as 40,40,8)')
+    .replace(/--touches FILE gives/g, 'the field "touches" gives');
+
 const um = (one) => (Number.isFinite(one.um) ? ` (up to ${number(one.um, 3)} µm)` : ' (size unknown)');
 
 /**
  * The fit that measures the squareness and the scales of X and Y with the distances of a printed square, where the last fit had
- * too many errors for them: of the machine file and the measurements of that fit. null: none, or the history does not have that fit.
+ * too many errors for them: of the machine file of that fit, and of the chosen measurements. null: none, or the history does not have that fit.
  */
 function fitAgain(offered) {
-  const before = offered && fitThatMade(store.machine);
-  if (!before) return null;
+  const made = offered && fitThatMade(store.machine);
+  if (!made) return null;
+  // The chosen measurements may be those of the last fit, read again with their uncertainties.
+  const before = { ...made, meas: store.measurements.length ? [...store.measurements] : made.meas };
   const error = el('div', {});
   const fit = button(
     'Fit the squareness and these scales alone',
@@ -47,7 +55,7 @@ function fitAgain(offered) {
   return el(
     'div',
     { class: 'controls' },
-    `If the distances of a printed square were measured, they determine the squareness and the scales of X and Y: of ${before.machine} the other errors stay as they are.`,
+    `If the distances of a printed square were measured, they determine the squareness and the scales of X and Y: of ${before.machine} the other errors stay as they are. The fit is of ${before.meas.join(', ')}.`,
     fit,
     error,
   );
@@ -76,7 +84,7 @@ function outcome(box, { text, result }, files, words) {
           el(
             'ul',
             { id: 'left-out' },
-            left.map((one) => el('li', {}, `${one.what}${um(one)}`)),
+            left.map((one) => el('li', {}, `${onPage(one.what)}${um(one)}`)),
           ),
         )
       : '',
