@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Inverses of large matrices: a third of the products that solving for each unit vector needs.
+// Inverses of large matrices: less than half of the products that solving for each unit vector needs.
 #include <Eigen/Core>
 #include <optional>
 
@@ -10,8 +10,7 @@ namespace vernier::maths {
 /// The diagonal must not have zeros. Block by block, as LAPACK's dtrtri.
 void invert_lower(Eigen::Ref<Eigen::MatrixXd> lower);
 
-/// Returns the lower triangle of r^T r for a lower triangular r, in a symmetric matrix. The upper triangle of
-/// `lower` is not read.
+/// Returns r^T r, symmetric, for the lower triangle r of `lower`. The upper triangle is not read.
 Eigen::MatrixXd square_of_lower(const Eigen::Ref<const Eigen::MatrixXd>& lower);
 
 /// Returns the inverse of a symmetric positive definite matrix, of which only the lower triangle is read.

@@ -49,9 +49,8 @@ const RuleText& text_of(SafetyRule rule) {
        "correction that is nearly zero fails this rule too, and can be accepted"},
       {"measured-range", "of the measured range",
        "outside the measured range the last value of a table is used and terms are extrapolated", 0.25,
-       "measure the whole travel, or reduce the travel of the machine file to the measured range (vernier "
-       "set "
-       "--measured-travel)"},
+       "measure the whole travel, or reduce the travel of the machine file to the measured range "
+       "(vernier set --measured-travel)"},
       {"input-range", "of the measured range", "a term in an input is valid only within its measured range",
        1, "measure at the temperatures at which the machine runs"},
       {"set-up", "um",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <memory>
 #include <set>
 
