@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "tools/lint/machine_lint.h"
 #include "tools/lint/measurement_lint.h"
@@ -111,6 +112,16 @@ std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error) 
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   const auto meant = text::word_meant(word, names);
   return meant ? fmt::format("\"{}\": no option of this command; did you mean {}?", word, *meant) : "";
+}
+
+std::string plain_range(const std::string& message) {
+  const auto begin = message.find(" not in range ");
+  const auto end = message.find('\n', begin);
+  const std::string largest = fmt::format(" to {:f}", std::numeric_limits<double>::max());
+  if (begin == std::string::npos || message.substr(begin, end - begin).find(largest) == std::string::npos)
+    return message;
+  return message.substr(0, begin) + " is not a positive number" +
+         (end == std::string::npos ? "" : message.substr(end));
 }
 
 void require_known_dashes(const CLI::App& vernier, const std::vector<std::string>& arguments) {

@@ -17,6 +17,10 @@ void require_known_commands(const CLI::App& vernier, const std::vector<std::stri
 /// empty for all other errors of the parser.
 std::string option_meant(const CLI::App& vernier, const CLI::ParseError& error);
 
+/// Returns the message of the parser with plain words for a range that has no end: the parser prints the
+/// largest number that a program can store.
+std::string plain_range(const std::string& message);
+
 /// Throws InputError for a word of several letters after one hyphen ("-out z.xml") that is similar to the
 /// name of an option. Reason: the parser reads -out as the option -o with the value "ut".
 void require_known_dashes(const CLI::App& vernier, const std::vector<std::string>& arguments);

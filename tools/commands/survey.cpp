@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/commands/survey.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
 #include <utility>
 
 #include "tools/commands/command.h"
+#include "tools/diagnose/between_stations.h"
 #include "tools/effects/roles.h"
 #include "tools/effects/survey/complete_survey.h"
+#include "tools/lint/dense_points.h"
 #include "tools/model/machine_reader.h"
 #include "tools/model/rebind.h"
 #include "tools/simulate/corrected.h"
@@ -81,6 +87,35 @@ std::vector<std::string> noise_sentences(const std::vector<fit::FileNoise>& nois
   std::vector<std::string> list;
   for (const fit::FileNoise& one : noise) list.push_back(one.sentence() + ".");
   return list;
+}
+
+std::vector<std::string> station_sentences(const diagnose::Diagnosis& diagnosis,
+                                           const model::Machine& machine, const model::Measurement& rows) {
+  std::vector<std::string> sentences;
+  if (diagnosis.verdict != diagnose::Verdict::kUnexplained) return sentences;
+  const std::vector<lint::DensePoints> dense = lint::dense_points(machine, rows);
+  std::set<std::string> axes;
+  for (const diagnose::CandidateFinding& one : diagnosis.candidates) {
+    const auto& axis = one.candidate.choice.axis;
+    if (!axis || !one.why_not.starts_with(diagnose::kTestBetweenStations) ||
+        !axes.insert(machine.axes[*axis].name).second)
+      continue;
+    const std::string& name = machine.axes[*axis].name;
+    const auto found = std::find_if(dense.begin(), dense.end(),
+                                    [&](const lint::DensePoints& points) { return points.axis == name; });
+    sentences.push_back(
+        found == dense.end()
+            ? fmt::format("A curve between two stations of the table of {0} can be this error, and the "
+                          "measurements are not dense enough for more stations: measure {0} alone at more "
+                          "positions, then add stations to the table (vernier set).",
+                          name)
+            : fmt::format(
+                  "A curve between two stations of the table of {0} can be this error: add stations "
+                  "to the table (vernier set MACHINE --stations {0}={1:.4g} -o NEW), fit and diagnose "
+                  "again, and compare the rms of the check rows.",
+                  name, found->step));
+  }
+  return sentences;
 }
 
 }  // namespace vernier::commands

@@ -147,7 +147,7 @@ int run(const std::vector<std::string>& arguments) {
     std::ostringstream out, said;
     app.exit(error, out, said);
     std::fputs(out.str().c_str(), stdout);
-    std::fputs(vernier::text::shown_message(said.str()).c_str(), stderr);
+    std::fputs(vernier::text::shown_message(vernier::commands::plain_range(said.str())).c_str(), stderr);
     return kBadInput;
   }
   return kDone;

@@ -221,7 +221,7 @@ PlannedAxis parse_planned_axis(const std::string& words) {
   return axis;
 }
 
-void plan_stations(std::vector<PlannedAxis>& axes, const std::string& words) {
+PlannedAxis& plan_stations(std::vector<PlannedAxis>& axes, const std::string& words) {
   constexpr std::size_t kMost = 2000;  // stations: a table of a longer travel needs another model
   const auto refuse = [&](const std::string& why) {
     throw text::InputError(fmt::format(
@@ -263,6 +263,7 @@ void plan_stations(std::vector<PlannedAxis>& axes, const std::string& words) {
   }
   stations.push_back(axis->max);
   axis->stations = std::move(stations);
+  return *axis;
 }
 
 std::vector<double> stations_of(const PlannedAxis& axis) {

@@ -79,8 +79,8 @@ PlannedAxis parse_planned_axis(const std::string& words);
 
 /// Gives an axis the stations of a text: "X=25" (a step, in mm or deg) or "X=0,50,130,600" (positions). The
 /// ends of the travel are stations too. Throws InputError for an unknown axis, a step that is not positive,
-/// positions that do not increase or are outside the travel, or more than 2000 stations.
-void plan_stations(std::vector<PlannedAxis>& axes, const std::string& words);
+/// positions that do not increase or are outside the travel, or more than 2000 stations. Returns the axis.
+PlannedAxis& plan_stations(std::vector<PlannedAxis>& axes, const std::string& words);
 
 /// Returns the stations of the table of an axis.
 std::vector<double> stations_of(const PlannedAxis& axis);

@@ -7,6 +7,9 @@
 
 namespace vernier::diagnose {
 
+/// Name of the acceptance test: the first word of CandidateFinding::why_not.
+inline constexpr const char* kTestBetweenStations = "stations";
+
 /// The error of an axis that its table leaves between two stations. A table follows its axis at the stations,
 /// and straight lines between them.
 struct CurveBetweenStations {

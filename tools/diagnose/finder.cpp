@@ -615,10 +615,9 @@ std::string Finder::failed_between_stations(std::size_t item) const {
   if (chance_beside(item, beside) < thresholds_.between_stations) return {};
   const model::Axis& axis = evidence_.machine().axes[*pool_.candidate(item).choice.axis];
   return fmt::format(
-      "stations: the table of {0} has stations {1:.4g} {2} apart, and a curve between them explains these "
-      "readings as well: make the machine file with --stations {0}={3:.4g} (vernier new), then diagnose "
-      "again",
-      axis.name, curve.spacing, axis.rotary ? "deg" : "mm", curve.spacing / 2);
+      "{}: the table of {} has stations {:.4g} {} apart, and a curve between them explains these readings as "
+      "well",
+      kTestBetweenStations, axis.name, curve.spacing, axis.rotary ? "deg" : "mm");
 }
 
 std::string Finder::failed_on_runs(std::size_t item, double gain) const {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "tools/model/machine_reader.h"
+#include "tools/model/station_table.h"
 #include "tools/text/numbers.h"
 #include "tools/text/xml_text.h"
 
@@ -29,6 +30,11 @@ std::string table_element(const model::Machine& machine, const model::Table& tab
   for (std::size_t k = 0; k < 6; ++k)
     if (table.free[k]) fit += (fit.empty() ? "" : " ") + std::string(model::kSixDofNames[k]);
   if (!fit.empty()) text += " fit=\"" + fit + "\"";
+  std::string scales;
+  for (std::size_t k = 0; k < 6; ++k)
+    if (table.free[k] && table.scale[k])
+      scales += (scales.empty() ? "" : " ") + text::number_text(*table.scale[k]);
+  if (!scales.empty()) text += " scale=\"" + scales + "\"";
   text += ">\n";
   for (const model::Station& station : table.stations) {
     text += "        <station loc=\"" + text::number_text(station.loc) + "\"";
@@ -117,6 +123,19 @@ model::Table empty_table(const model::Machine& machine, std::size_t axis,
   table.stations.clear();
   for (const double position : positions)
     table.stations.push_back({position, text::number_text(position), {}});
+  return table;
+}
+
+model::Table table_at(const model::Machine& machine, std::size_t axis, const std::vector<double>& positions) {
+  const model::Table* const old = machine.table_of(axis);
+  if (old == nullptr)
+    throw text::InputError({machine.file, machine.axes[axis].line}, machine.axes[axis].name,
+                           "the machine file has no table of this axis");
+  model::Table table = empty_table(machine, axis, positions);
+  for (model::Station& station : table.stations) {
+    const std::array<double, 6> values = model::table_values(*old, station.loc);
+    std::transform(values.begin(), values.end(), station.value.begin(), nine_decimals);
+  }
   return table;
 }
 

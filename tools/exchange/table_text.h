@@ -21,6 +21,10 @@ void check_used(const model::Machine& machine, const model::Table& table);
 model::Table empty_table(const model::Machine& machine, std::size_t axis,
                          const std::vector<double>& positions);
 
+/// Returns the table of an axis at other stations: the values that the given table has there. Throws
+/// InputError if the machine has no table of the axis.
+model::Table table_at(const model::Machine& machine, std::size_t axis, const std::vector<double>& positions);
+
 /// Returns a number of at most nine decimals without the rounding error of binary arithmetic.
 double nine_decimals(double value);
 

@@ -200,6 +200,7 @@ void judge(FitResult& result, const model::Machine& machine, const model::Measur
                         result.misfit_mm, result.reach_mm);
   if (mistake.empty())
     mistake = far_rows(measurement, [&](const model::Measurement& rows) { return set_up(machine, rows); });
+  if (mistake.empty() && !result.converged) mistake = unbelievable_u(measurement, result.residual);
   if (mistake.empty() && !result.converged)
     mistake = blame_of(result, end.converged ? Eigen::VectorXd() : end.last_step, readings);
   if (!mistake.empty()) result.absurd += ": " + mistake;

@@ -384,6 +384,28 @@ WorstReading worst_reading(const model::Measurement& measurement, const Eigen::V
   return worst;
 }
 
+std::string unbelievable_u(const model::Measurement& measurement, const Eigen::VectorXd& residual) {
+  constexpr double kUnbelievable = 300;  // a model that misses an effect leaves tens of times u
+  std::vector<std::vector<double>> ratios(measurement.files.size()), lengths(measurement.files.size());
+  for (std::size_t i = 0; i < measurement.observations.size(); ++i) {
+    const model::Observation& one = measurement.observations[i];
+    const double u = model::uncertainty_of(measurement, one);
+    if (!(u > 0) || is_rotation(one.kind) || measurement.check[one.row] != 0) continue;
+    ratios[measurement.file[one.row]].push_back(std::abs(residual[static_cast<Eigen::Index>(i)]) / u);
+    lengths[measurement.file[one.row]].push_back(u);
+  }
+  for (std::size_t file = 0; file < ratios.size(); ++file) {
+    if (ratios[file].empty()) continue;
+    const double times = maths::median(std::move(ratios[file]));
+    if (times > kUnbelievable)
+      return fmt::format(
+          "the residual of {} is {:.2g} times the standard uncertainty u of its readings ({:.2g} um): "
+          "probably this u is in another unit (5 um = 0.005 mm). Correct u, or remove it",
+          measurement.files[file], times, maths::kUmPerMm * maths::median(std::move(lengths[file])));
+  }
+  return {};
+}
+
 LikelyMistake likely_mistake(const model::Machine& machine, const model::Measurement& rows,
                              const WorstReading& worst, bool plausible) {
   // Share of chi^2 in one reading; another mistake with so small a remainder is equally likely.

@@ -110,6 +110,14 @@ std::vector<DensePoints> dense_points(const model::Machine& machine,
   return list;
 }
 
+std::vector<DensePoints> dense_points(const model::Machine& machine, const model::Measurement& survey) {
+  std::vector<std::vector<double>> positions;
+  for (const model::Column& axis : survey.states.axis) positions.emplace_back(axis.begin(), axis.end());
+  std::vector<std::size_t> readings(survey.rows());
+  for (const model::Observation& one : survey.observations) ++readings[one.row];
+  return dense_points(machine, positions, readings);
+}
+
 std::string dense_points_text(const DensePoints& points) {
   return fmt::format("{}: {} positions about {:.4g} {} apart, and the table has stations {:.4g} {} apart",
                      points.axis, points.positions, points.spacing, points.unit, points.station_spacing,
@@ -118,8 +126,8 @@ std::string dense_points_text(const DensePoints& points) {
 
 std::string dense_points_remedy(const DensePoints& points) {
   std::string words = fmt::format(
-      "the curve between two stations remains in the residual, where it can look like a cyclic error; make "
-      "the machine file with --stations {}={:.4g} (vernier new), or add stations to the table",
+      "the curve between two stations remains in the residual, where it can look like a cyclic error; add "
+      "stations to the table (vernier set MACHINE --stations {}={:.4g} -o NEW)",
       points.axis, points.step);
   // A simulated mill, a laser along X in steps of 60 mm and 176 points of a tracker (u = 4 um): with stations
   // 60 mm apart instead of 200 mm 0.25 um worse, 0.06 um worse and 0.06 um better (three seeds; the rms of

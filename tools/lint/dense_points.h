@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/model/machine.h"
+#include "tools/model/measurement.h"
 
 namespace vernier::lint {
 
@@ -27,6 +28,9 @@ struct DensePoints {
 std::vector<DensePoints> dense_points(const model::Machine& machine,
                                       const std::vector<std::vector<double>>& positions,
                                       const std::vector<std::size_t>& readings);
+
+/// As above, for the rows of a survey.
+std::vector<DensePoints> dense_points(const model::Machine& machine, const model::Measurement& survey);
 
 /// "X: 41 positions 25 mm apart, stations 200 mm apart", and what to do.
 std::string dense_points_text(const DensePoints& points);

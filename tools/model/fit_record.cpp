@@ -240,10 +240,12 @@ bool read_fit_numbers(std::string_view text, std::size_t n, FitRecord& record) {
   return record.values.allFinite() && record.factor.allFinite();
 }
 
-std::string with_fit_record(const std::string& text, const FitRecord& record) {
+namespace {
+
+/// The text before the element <fitted> and behind it; nullopt: the text has no such element.
+std::optional<std::pair<std::string, std::string>> around_record(const std::string& text) {
   pugi::xml_document document;
   document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
-  const std::string element = fit_record_xml(record);
   for (const pugi::xml_node node : document.document_element().children()) {
     if (!text::equal_no_case(node.name(), "fitted")) continue;
     std::size_t begin = text.rfind('<', static_cast<std::size_t>(node.offset_debug()));
@@ -251,10 +253,23 @@ std::string with_fit_record(const std::string& text, const FitRecord& record) {
     const std::size_t close = text.find("</fitted", begin);
     const std::size_t stop = close == std::string::npos ? end : text.find('>', close) + 1;
     while (begin > 0 && text[begin - 1] == ' ') --begin;
-    return text.substr(0, begin) + element + text.substr(text[stop] == '\n' ? stop + 1 : stop);
+    return std::pair(text.substr(0, begin), text.substr(text[stop] == '\n' ? stop + 1 : stop));
   }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string with_fit_record(const std::string& text, const FitRecord& record) {
+  const std::string element = fit_record_xml(record);
+  if (const auto around = around_record(text)) return around->first + element + around->second;
   const std::size_t root_end = text.rfind("</");
   return text.substr(0, root_end) + element + text.substr(root_end);
+}
+
+std::string without_fit_record(const std::string& text) {
+  const auto around = around_record(text);
+  return around ? around->first + around->second : text;
 }
 
 }  // namespace vernier::model

@@ -134,4 +134,7 @@ bool read_fit_numbers(std::string_view text, std::size_t n, FitRecord& record);
 /// is inserted before the end of the root element.
 std::string with_fit_record(const std::string& text, const FitRecord& record);
 
+/// Returns the machine text without the element `<fitted>`.
+std::string without_fit_record(const std::string& text);
+
 }  // namespace vernier::model

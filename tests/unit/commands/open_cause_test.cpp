@@ -118,6 +118,23 @@ TEST(Improve, AddsWhatIsDeterminedWhereTheFitOfAllEffectsDoesNotConverge) {
   EXPECT_THAT(result.said, HasSubstr("The fit with more effects does not converge"));
 }
 
+/// The screw has a wave of 340 mm between stations 200 mm apart. diagnose refused the cyclic error and
+/// proposed it in its last line, with another distance of stations than lint and fit.
+TEST(Diagnose, ACurveBetweenStationsHasOneNextStep) {
+  const std::string data = VERNIER_SOURCE_DIR "/tests/data/hidden/mill_wave",
+                    said = testing::TempDir() + "mill_wave_" + std::to_string(getpid()) + ".txt";
+  const int status = std::system(
+      (VERNIER_BIN_DIR "/vernier diagnose " + data + "/model.xml " + data + "/survey*.csv >" + said + " 2>&1")
+          .c_str());
+  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  const std::string words = text::read_file(said);
+  EXPECT_THAT(words, HasSubstr("verdict: unexplained"));
+  EXPECT_THAT(words, HasSubstr("vernier set MACHINE --stations X=70 -o NEW"));
+  EXPECT_THAT(words, Not(HasSubstr("vernier add 'cyclic-error")));
+  EXPECT_THAT(words, Not(HasSubstr("X=100")));
+  fs::remove(said);
+}
+
 /// The points of the tracker in a random order, so that each axis reverses often, and no check rows. The two
 /// backlashes explain 99 % of chi^2 beyond u, and runs held out in turn confirm them without doubt; what is
 /// left are curves between the stations.

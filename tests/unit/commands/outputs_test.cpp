@@ -373,6 +373,31 @@ TEST_F(Instruments, ReadingsOfTwoKindsWithoutAnyUAreSaidToHaveOneWeight) {
   EXPECT_EQ(said().find(words), std::string::npos) << said();
 }
 
+TEST_F(Instruments, ATableGetsStationsWithTheValuesThatItHasThere) {
+  write_file(in("m.xml"), R"xml(<machine name="m"><variables><machineaxes><X min="0" max="600"/></machineaxes>
+<comptables><table axis="X" fit="X Y" scale="0.02 0.001"><station loc="0" X="0"/><station loc="300" X="0.003"/>
+<station loc="600" X="0.001" Y="0.0004"/></table></comptables></variables>
+<transforms><sixdof X="X+lXx" Y="lXy"/></transforms></machine>)xml");
+  std::string rows = "X[mm],x[mm],u[um]\n";
+  for (int i = 0; i <= 20; ++i) rows += fmt::format("{},{:.4f},1\n", 30 * i, 30 * i + 0.001 * (i % 3));
+  write_file(in("laser.csv"), rows);
+  ASSERT_EQ(run("vernier fit m.xml laser.csv -o f.xml"), 0) << said();
+  EXPECT_NE(read_file(in("f.xml")).find("<fitted"), std::string::npos);
+  ASSERT_EQ(run("vernier set m.xml --stations X=150 -o s.xml"), 0) << said();
+  EXPECT_NE(said().find("table of X: 5 stations, 3 before; fit the machine again"), std::string::npos)
+      << said();
+  const std::string text = read_file(in("s.xml"));
+  EXPECT_NE(text.find("<station loc=\"150\" X=\"0.0015\""), std::string::npos) << text;
+  EXPECT_NE(text.find("<station loc=\"450\" X=\"0.002\" Y=\"2e-04\" Z=\"0\""), std::string::npos) << text;
+  EXPECT_NE(text.find("scale=\"0.02 0.001\""), std::string::npos) << text;
+  // The record of a fit is about other parameters.
+  ASSERT_EQ(run("vernier set f.xml --stations X=150 -o fs.xml"), 0) << said();
+  EXPECT_EQ(read_file(in("fs.xml")).find("<fitted"), std::string::npos);
+  ASSERT_EQ(run("vernier fit fs.xml laser.csv -o fsf.xml"), 0) << said();
+  EXPECT_EQ(run("vernier set m.xml --stations Y=150 -o no.xml"), 1) << said();
+  EXPECT_EQ(run("vernier set m.xml --stations X=0,900 -o no.xml"), 1) << said();
+}
+
 TEST_F(Instruments, ATravelCanBeReducedToWhatWasMeasured) {
   std::string machine = kMachine;
   machine.replace(machine.find("min=\"0\" max=\"600\""), 17, "min=\"-300\" max=\"600\"");

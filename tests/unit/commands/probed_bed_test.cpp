@@ -109,6 +109,25 @@ TEST_F(ProbedBed, AReversalHasOneValueInFitAndDiagnose) {
   EXPECT_THAT(said, HasSubstr("reversal value B = 2 k"));
 }
 
+/// A user stated 0.005 (mm) as --u, which is in um: the fit of touches of 5 nm did not converge.
+TEST_F(ProbedBed, AnUncertaintyInAnotherUnitIsNamed) {
+  text::write_file(
+      folder + "/printer.cfg",
+      "[stepper_x]\nrotation_distance: 40\n[stepper_y]\nrotation_distance: 40\n"
+      "[stepper_z]\nrotation_distance: 8\n[probe]\nx_offset: -30\ny_offset: 20\n"
+      "[bed_mesh default]\npoints =\n  0.01, 0.02, 0.03\n  0.02, 0.03, 0.05\n  0.04, 0.05, 0.08\n"
+      "x_count = 3\ny_count = 3\nmin_x = 30\nmax_x = 180\nmin_y = 30\nmax_y = 180\n");
+  EXPECT_EQ(run("vernier import printer printer.cfg --u 0.005 -o t.csv"), 1) << said;
+  EXPECT_THAT(said, HasSubstr("for 0.005 mm state --u 5"));
+  EXPECT_EQ(run("vernier import printer printer.cfg --u 5m -o t.csv"), 1) << said;
+  EXPECT_THAT(said, HasSubstr("of the form 5 (um), 5um or 0.005mm"));
+  ASSERT_EQ(run("vernier import printer printer.cfg --u 5 -o um.csv"), 0) << said;
+  EXPECT_THAT(said, HasSubstr("with --steps 40,40,8, export klipper also corrects measured scales"));
+  ASSERT_EQ(run("vernier import printer printer.cfg --u 0.005mm -o mm.csv"), 0) << said;
+  EXPECT_EQ(text::read_file(folder + "/um.csv").substr(text::read_file(folder + "/um.csv").find("X[mm]")),
+            text::read_file(folder + "/mm.csv").substr(text::read_file(folder + "/mm.csv").find("X[mm]")));
+}
+
 TEST_F(ProbedBed, AnExistingMachineFileGetsAnArtefact) {
   std::string text = kMachine;
   const std::string bed = "  <artefact name=\"bed\" type=\"plane\"/>";

@@ -368,6 +368,25 @@ TEST(Sanity, NamesAMissingSetUp) {
   EXPECT_EQ(fitted("<BaseShift/>").absurd, "");
 }
 
+TEST(Convention, AUncertaintyInAnotherUnitIsNamed) {
+  const Machine machine = parse_machine(
+      R"xml(<machine><variables><machineaxes><X min="0" max="100"/></machineaxes></variables><transforms>
+      <sixdof X="X"/></transforms></machine>)xml",
+      "m.xml");
+  const auto said = [&](const char* u) {
+    const Measurement rows = parse_measurement(
+        fmt::format("X[mm],x[mm],u[um]\n0,0.01,{0}\n50,50.01,{0}\n100,99.99,{0}\n", u), "bed.csv", machine);
+    return fit::unbelievable_u(rows, fit::residuals(machine, rows));
+  };
+  EXPECT_EQ(said("5"), "");
+  EXPECT_EQ(said("0.1"), "") << "a model that misses an effect leaves 100 times u";
+  EXPECT_NE(
+      said("0.005").find("the residual of bed.csv is 2e+03 times the standard uncertainty u of its readings "
+                         "(0.005 um): probably this u is in another unit"),
+      std::string::npos)
+      << said("0.005");
+}
+
 /// A fixed camera sees a board on the tool. Some programs give the pose of the camera in the frame of the
 /// board.
 TEST(Sanity, NamesInvertedPoses) {

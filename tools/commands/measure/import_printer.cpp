@@ -7,7 +7,10 @@
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
 #include "tools/import/logs/printer_file.h"
+#include "tools/maths/factors.h"
+#include "tools/model/artefact.h"
 #include "tools/sheet/encoding.h"
+#include "tools/text/error.h"
 #include "tools/text/files.h"
 #include "tools/text/numbers.h"
 
@@ -21,6 +24,7 @@ struct PrinterArguments {
   std::string series;  // number of a survey, or kAllSurveys
   std::string twist = "included";
   std::vector<double> offset;
+  std::string u;  // empty: not stated
   importer::PrinterOptions options;
   ImportOutput output;
 };
@@ -37,7 +41,28 @@ const char* name_of(importer::PrinterFile::Kind kind) {
   return "";
 }
 
+/// Standard uncertainty of a touch, um: "5" (um), "5 um" or "0.005 mm".
+double stated_u_um(const std::string& words) {
+  // Outside these limits the number was in another unit: no printer touches so well or so badly.
+  constexpr double kLeast_um = 0.05, kMost_mm = 1;
+  const auto unit_at = words.find_first_of("um");
+  const auto number = text::parse_number(words.substr(0, unit_at));
+  const auto mm = number && unit_at == std::string::npos ? std::optional(*number / maths::kUmPerMm)
+                                                         : model::length_in_mm(words);
+  if (!mm || !(*mm > 0) || *mm > kMost_mm)
+    throw text::InputError("--u " + words + ": of the form 5 (um), 5um or 0.005mm, at most 1 mm");
+  const double um = *mm * maths::kUmPerMm;
+  if (um < kLeast_um)
+    throw text::InputError(
+        fmt::format("--u {}: a touch of a printer is not as accurate as {:g} um. A number without unit is in "
+                    "um: for {:g} "
+                    "mm state --u {:g}",
+                    words, um, um, um * maths::kUmPerMm));
+  return um;
+}
+
 void run_printer(PrinterArguments& arguments) {
+  if (!arguments.u.empty()) arguments.options.u_um = stated_u_um(arguments.u);
   if (!arguments.offset.empty()) arguments.options.offset_mm = {arguments.offset[0], arguments.offset[1]};
   if (arguments.offset.size() > 2) arguments.options.z_offset_mm = arguments.offset[2];
   using Twist = importer::PrinterOptions::Twist;
@@ -137,8 +162,8 @@ void add_printer_kind(CLI::App& kind) {
         const bool known = word == kAllSurveys || text::parse_count(word);
         return known ? std::string() : "give the number of a survey, or all";
       });
-  kind.add_option("--u", arguments->options.u_um, "standard uncertainty of a touch, um")
-      ->check(CLI::PositiveNumber);
+  kind.add_option("--u", arguments->u,
+                  "standard uncertainty of a touch: a number in um, or with its unit (0.005mm)");
   add_import_output(kind, arguments->output);
   kind.footer("vernier fit, compare and diagnose read the output (tools/docs/touch.md).");
   kind.callback([arguments] { run_printer(*arguments); });

@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "tools/commands/command.h"
 #include "tools/commands/report_header.h"
 #include "tools/commands/survey.h"
+#include "tools/diagnose/between_stations.h"
 #include "tools/diagnose/causes.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/sentences.h"
@@ -77,39 +79,52 @@ void print_candidates(std::FILE* out, const diagnose::Diagnosis& d) {
   }
 }
 
-/// The set of causes, if it has more than one: a single one is the explanation.
+/// The set of causes, if it has more than one: a single one is the explanation. Of one cyclic error with many
+/// possible periods three are printed; the explanation and the JSON result list them.
 void print_causes(std::FILE* out, const diagnose::Diagnosis& diagnosis) {
   if (diagnosis.causes.size() < 2) return;
   fmt::print(out, "causes that the data do not reject (significance level {:g}):\n",
              diagnose::kLevelOfCauses);
+  constexpr std::size_t kPeriods = 3;
+  std::map<std::string, std::size_t> periods;
   for (const diagnose::Cause& cause : diagnosis.causes)
-    fmt::print(out, "  {:<60} evidence {:.1f}\n", cause.description, cause.evidence);
+    if (!cause.period || !cause.candidate || ++periods[cause.candidate->spoken] <= kPeriods)
+      fmt::print(out, "  {:<60} evidence {:.1f}\n", cause.description, cause.evidence);
+  for (const auto& [spoken, count] : periods)
+    if (count > kPeriods) fmt::print(out, "  {}: {} further periods\n", spoken, count - kPeriods);
   fmt::print(out, "\n");
 }
 
 /// What to do with effects that reduce the residual, if the verdict names no cause for all of it.
 void print_next_step(std::FILE* out, const diagnose::Diagnosis& d) {
   if (d.verdict != diagnose::Verdict::kUnexplained || d.candidates.empty()) return;
+  // What a curve between two stations can be has its own next step in the explanation.
+  if (std::ranges::any_of(d.candidates, [](const diagnose::CandidateFinding& one) {
+        return one.why_not.starts_with(diagnose::kTestBetweenStations);
+      }))
+    return;
   if (d.ladder.size() > 1)
     fmt::print(
         out,
         "next: the option --machine-out NEW writes the machine file with the {} of the stepwise model, "
         "fitted; the rest of the residual has no name in the catalogue\n",
         d.ladder.size() == 2 ? "effect" : fmt::format("{} effects", d.ladder.size() - 1));
-  else if (const auto best = std::max_element(d.candidates.begin(), d.candidates.end(),
-                                              [](const auto& a, const auto& b) { return a.score < b.score; });
-           !(best->score > 0))
+  else if (const auto first = std::find_if(d.candidates.begin(), d.candidates.end(),
+                                           [](const diagnose::CandidateFinding& one) {
+                                             return one.score > 0 && one.why_not.empty() && !one.add.empty();
+                                           });
+           first == d.candidates.end())
     fmt::print(
         out,
-        "next: no candidate has evidence (no score above 0): measure again, or find the cause outside the "
-        "catalogue; adding a candidate is no explanation\n");
-  else if (const std::string& add = d.candidates.front().add; !add.empty())
+        "next: no candidate has evidence (a score above 0, and no failed test): measure again, or find "
+        "the cause outside the catalogue; adding a candidate is no explanation\n");
+  else
     fmt::print(
         out,
-        "next: to try the first candidate, vernier add '{}' MACHINE -o NEW, then vernier fit NEW MEAS -o "
+        "next: to try the candidate \"{}\", vernier add '{}' MACHINE -o NEW, then vernier fit NEW MEAS -o "
         "FITTED; keep it only if the residuals of the check rows divided by their standard uncertainty "
         "decrease (vernier fit prints their rms)\n",
-        add);
+        first->candidate.spoken, first->add);
 }
 
 /// Residuals of the machine of the last step.
@@ -132,6 +147,8 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
   diagnose::Diagnosis diagnosis = diagnose_and_estimate_noise(text, machine, m, noise, options);
   for (const std::string& sentence : noise_sentences(noise)) diagnosis.explanation += " " + sentence;
+  for (const std::string& sentence : station_sentences(diagnosis, machine, m))
+    diagnosis.explanation += " " + sentence;
   for (const std::string& sentence : column_sentences) diagnosis.explanation += " " + sentence;
   diagnosis.next_measurement = plan::advice_for(text, machine, m, diagnosis, options.effects);
   const nlohmann::ordered_json json = results::diagnosis_json(diagnosis, m);

@@ -8,6 +8,7 @@
 #include "tools/commands/command.h"
 #include "tools/create/machine_plan.h"
 #include "tools/effects/insertion.h"
+#include "tools/exchange/table_text.h"
 #include "tools/model/fit_record.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
@@ -48,7 +49,7 @@ void run_exclude(const ExcludeArguments& arguments) {
 
 struct SetArguments {
   std::string machine, output, json;
-  std::vector<std::string> values, artefacts;
+  std::vector<std::string> values, artefacts, stations;
   bool reflector = false, measured_travel = false;
 };
 
@@ -112,13 +113,38 @@ std::vector<std::size_t> take_measured_travel(model::Machine& machine) {
   return changed;
 }
 
+/// A table with other stations.
+struct NewStations {
+  std::string axis;
+  std::size_t before = 0, after = 0;  // number of stations
+};
+
+/// Gives tables the stations that the arguments state, with the values that the tables have there. The record
+/// of the last fit is about the former stations, and is removed.
+std::vector<NewStations> take_stations(std::string& text, const SetArguments& arguments) {
+  std::vector<NewStations> list;
+  for (const std::string& words : arguments.stations) {
+    const model::Machine machine = model::parse_machine(text, arguments.machine);
+    std::vector<create::PlannedAxis> axes;
+    for (const model::Axis& axis : machine.axes)
+      if (axis.min && axis.max) axes.push_back({axis.name, *axis.min, *axis.max});
+    const create::PlannedAxis& planned = create::plan_stations(axes, words);
+    const std::size_t index = *machine.find_axis(planned.name);
+    const model::Table table = exchange::table_at(machine, index, planned.stations);
+    list.push_back({planned.name, machine.table_of(index)->stations.size(), table.stations.size()});
+    text = exchange::set_table(model::without_fit_record(text), machine, table);
+  }
+  return list;
+}
+
 void run_set(const SetArguments& arguments) {
-  if (arguments.values.empty() && arguments.artefacts.empty() && !arguments.reflector &&
-      !arguments.measured_travel)
+  if (arguments.values.empty() && arguments.artefacts.empty() && arguments.stations.empty() &&
+      !arguments.reflector && !arguments.measured_travel)
     throw text::InputError(
-        "set: give a value (NAME=NUMBER), --artefact NAME:TYPE, --reflector or --measured-travel");
-  const std::string text =
-      with_reflector(with_artefacts(text::read_file(arguments.machine), arguments), arguments);
+        "set: give a value (NAME=NUMBER), --artefact NAME:TYPE, --stations NAME=STEP, --reflector or "
+        "--measured-travel");
+  std::string text = with_reflector(with_artefacts(text::read_file(arguments.machine), arguments), arguments);
+  const std::vector<NewStations> restationed = take_stations(text, arguments);
   model::Machine machine = model::parse_machine(text, arguments.machine);
   std::map<std::string, double> values;
   for (const std::string& word : arguments.values) {
@@ -137,10 +163,15 @@ void run_set(const SetArguments& arguments) {
                                  {"values", values},
                                  {"artefacts", arguments.artefacts},
                                  {"reflector", arguments.reflector},
-                                 {"travels", nlohmann::ordered_json::object()}};
+                                 {"travels", nlohmann::ordered_json::object()},
+                                 {"stations", nlohmann::ordered_json::object()}};
   for (const std::size_t index : travels)
     json["travels"][machine.axes[index].name] = {*machine.axes[index].min, *machine.axes[index].max};
+  for (const NewStations& one : restationed) json["stations"][one.axis] = one.after;
   write_json(arguments.json, json);
+  for (const NewStations& one : restationed)
+    fmt::print(human_stream(arguments.json), "table of {}: {} stations, {} before; fit the machine again\n",
+               one.axis, one.after, one.before);
   for (const std::size_t index : travels)
     fmt::print(human_stream(arguments.json), "{}: travel from {:g} to {:g} {}, as measured\n",
                machine.axes[index].name, *machine.axes[index].min, *machine.axes[index].max,
@@ -195,6 +226,13 @@ void register_set(CLI::App& vernier) {
           "--artefact", arguments->artefacts,
           "touched object to declare in the machine: NAME:TYPE, such as bed:plane; types: point, line, "
           "plane, sphere, cylinder; may be repeated")
+      ->allow_extra_args(false);
+  command
+      ->add_option(
+          "--stations", arguments->stations,
+          "NAME=STEP or NAME=POSITION,POSITION,...: new stations of the table of an axis, mm or deg, with "
+          "the values that the table has there: X=25; the ends of the travel are stations too; may be "
+          "repeated")
       ->allow_extra_args(false);
   command->add_flag("--reflector", arguments->reflector,
                     "the readings are those of a reflector at an unknown place on the tool: declare this "

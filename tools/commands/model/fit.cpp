@@ -184,20 +184,6 @@ fit::Prior prior_of(const std::string& text) {
   return {text.substr(0, at), *std};
 }
 
-/// The positions of each axis in the rows.
-std::vector<std::vector<double>> positions_of(const model::Measurement& m) {
-  std::vector<std::vector<double>> positions;
-  for (const model::Column& axis : m.states.axis) positions.emplace_back(axis.begin(), axis.end());
-  return positions;
-}
-
-/// Number of readings of each row.
-std::vector<std::size_t> readings_of(const model::Measurement& m) {
-  std::vector<std::size_t> readings(m.rows());
-  for (const model::Observation& one : m.observations) ++readings[one.row];
-  return readings;
-}
-
 /// The remedy if a free tool point explains most of the residual of a fit; otherwise empty.
 std::string unknown_tool(const model::Machine& machine, const model::Measurement& m, fit::FitOptions options,
                          const fit::FitResult& held) {
@@ -256,6 +242,10 @@ void run_fit(const FitArguments& arguments) {
     json["notes"].push_back(note);
     fmt::print(stderr, "note: {}\n", note);
   }
+  for (const lint::DensePoints& points : lint::dense_points(result.machine, m)) {
+    json["notes"].push_back(lint::dense_points_text(points) + ": " + lint::dense_points_remedy(points));
+    fmt::print(stderr, "note: {}\n", json["notes"].back().get<std::string>());
+  }
   const std::vector<std::string> places = exchange::tool_shift_places(result.machine, text);
   for (const std::string& one : places) json["notes"].push_back(one);
   if (!arguments.output.empty())
@@ -270,8 +260,6 @@ void run_fit(const FitArguments& arguments) {
     fmt::print(
         stderr, "note: {}{}\n", one.sentence(),
         one.rows.empty() ? "; to fit this set-up, give at least three rows of the file the role fit" : "");
-  for (const lint::DensePoints& points : lint::dense_points(result.machine, positions_of(m), readings_of(m)))
-    fmt::print(stderr, "note: {}: {}\n", lint::dense_points_text(points), lint::dense_points_remedy(points));
   print_result(human_stream(arguments.json), result, m);
   for (const std::string& one : places) fmt::print(human_stream(arguments.json), "{}\n", one);
   results::print_domains(human_stream(arguments.json), json["domains"]);

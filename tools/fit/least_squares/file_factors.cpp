@@ -28,8 +28,8 @@ double factor_of(const FittedAlone& alone) {
 
 std::string FileFactor::sentence() const {
   return fmt::format(
-      "{}: the model leaves {:.3g} times the stated u in this file alone, so u of its readings counts {:.3g} "
-      "times in the fit",
+      "{}: the model leaves {:.3g} times the standard uncertainty u of the readings in this file alone, so "
+      "their u counts {:.3g} times in the fit",
       name, factor, factor);
 }
 

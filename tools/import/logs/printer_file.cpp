@@ -800,6 +800,22 @@ ImportTable table_of(const std::string& file, const std::vector<Touch>& touches,
   return table;
 }
 
+/// A note with the rotation_distance of X, Y and Z, if the configuration has all three: export needs them.
+std::string note_of_steps(const std::map<std::string, Section>& sections) {
+  std::vector<std::string> values;
+  for (const char* const axis : {"x", "y", "z"}) {
+    const auto section = sections.find(std::string("stepper_") + axis);
+    if (section == sections.end()) return {};
+    const auto setting = section->second.find("rotation_distance");
+    if (setting == section->second.end() || !text::parse_number(setting->second.value)) return {};
+    values.push_back(setting->second.value);
+  }
+  return fmt::format(
+      "the rotation_distance of the configuration is {0} (X,Y,Z, mm): with --steps {0}, export klipper also "
+      "corrects measured scales of the axes",
+      text::joined(values, ","));
+}
+
 /// Touches of the probe as touches of the nozzle at the touched points.
 void take_as_nozzle(std::vector<Touch>& touches, const AxisTwist& twist, const PrinterOptions& options,
                     const std::array<double, 2>& offset) {
@@ -841,6 +857,7 @@ PrinterFile read_printer_file(const std::string& text, const std::string& file,
                                    [](const auto& one) { return one.first.starts_with(kMesh); });
     if (!options.offset_mm && alone) refuse_without_offset(file);
     touches = Mesh(sections, file, result.name).touches(result.offset_mm);
+    if (std::string note = note_of_steps(sections); !note.empty()) result.notes.push_back(std::move(note));
   } else {
     touches = ProbeLog(result, file, options).read(text);
   }

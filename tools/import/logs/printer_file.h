@@ -50,7 +50,8 @@ struct PrinterFile {
   std::size_t left_out = 0;              // number of touches in a log that the printer discarded
   std::string surveys;                   // of a log whose surveys are read as one table: the list of them;
                                          // empty: the log has one, or the user chose one
-  std::vector<std::string> notes;        // about other meshes of the file, and surveys that are not complete
+  std::vector<std::string> notes;        // about other meshes of the file, surveys that are not complete,
+                                         // and the rotation_distance of the configuration
   ImportTable table;                     // columns X[mm], Y[mm], Z[mm], on; probeX[mm] and probeY[mm] if the
                                          // probe has an offset; if known u, t[s], temperatures
 };

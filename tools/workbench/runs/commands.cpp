@@ -46,7 +46,7 @@ constexpr Allowed kAllowed[] = {
     {"evaluate iso230-2", false, false, "meas axis tolerance uncertainty header language output"},
     {"map", false, false, "machine grid correction inputs over lines header language output!"},
     {"add", false, true, "effect machine output"},
-    {"set", false, true, "machine values artefact reflector measured-travel output"},
+    {"set", false, true, "machine values artefact stations reflector measured-travel output"},
     {"exclude", false, true, "meas lines! reason restore output!"},
     {"effects", false, false, ""},
     {"plan", false, false, "machine meas! separate! points confidence gcode output"},

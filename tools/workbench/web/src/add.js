@@ -3,7 +3,7 @@ import { choice, el, table, tiles } from '../../../report/web/src/dom.js';
 import { number, printed } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, getJson, postBlob, postJson, refresh, run } from './api.js';
 import { fallingFigure } from './charts.js';
-import { button, gate, guarded, needsSubject, panel, programWords, showError } from './parts.js';
+import { button, gate, guarded, kAddStations, needsSubject, panel, programWords, showError } from './parts.js';
 import { moreOptions } from './options.js';
 import { parameterPanel } from './parameters.js';
 import { redrawAll } from './plot.js';
@@ -37,6 +37,8 @@ async function fitInto(machine, label, options = {}) {
 function notesOfFit(machine, label, options, notes) {
   const box = document.getElementById('fit-notes');
   box.replaceChildren(...notes.map((one) => el('p', { class: 'note', role: 'status' }, printed(programWords(one)))));
+  const denser = stationButtons(notes.join(' '), document.getElementById('add-error'));
+  if (denser.length) box.append(el('div', { class: 'controls' }, denser));
   if (notes.length) box.scrollIntoView({ block: 'nearest' });
   const free = notes.map((one) => one.match(/fit it: --free ([\w,]+)/)).find(Boolean);
   if (!free) return;
@@ -66,6 +68,22 @@ export async function addEffect(effect, error) {
     await fitInto(output, `+ ${result.said ?? result.label}`);
   });
 }
+
+/** Gives a table more stations in a new machine file, and fits it: before and after on the same scale. */
+async function addStations(words) {
+  location.hash = '#add';
+  const before = store.machine;
+  if (steps.at(-1)?.machine !== before) await fitInto(before, 'the model, fitted');
+  const output = freeName(`${unfitted(before)}-stations`, '.xml');
+  await run({ command: 'set', machine: before, stations: [words], output });
+  await fitInto(output, `with stations ${words}`);
+}
+
+/** A button for each table that a text of a command names as too coarse. */
+export const stationButtons = (text, error) =>
+  [...new Set([...text.matchAll(/vernier set MACHINE --stations (\S+) -o NEW/g)].map((one) => one[1]))].map((words) =>
+    button(`${kAddStations}${words}`, () => guarded(error, () => addStations(words)), { class: 'quiet add-stations' }),
+  );
 
 /** Before and after, on fit and on held-out rows; the last step can be taken back. */
 function stepsPanel() {

@@ -3,7 +3,7 @@ import { choice, el, table } from '../../../report/web/src/dom.js';
 import { number } from '../../../report/web/src/data.js';
 import { next, title, verdict } from '../../../report/web/src/diagnosis.js';
 import { fileAddress, freeName, run } from './api.js';
-import { addEffect, withReflector } from './add.js';
+import { addEffect, stationButtons, withReflector } from './add.js';
 import { ladderFigure } from './charts.js';
 import { moreOptions } from './options.js';
 import { showExplanation } from './overlay.js';
@@ -238,6 +238,7 @@ export function diagnoseView(root) {
         /--reflector/.test(result.explanation)
           ? button('Declare the reflector', () => guarded(error, withReflector), { id: 'declare-reflector' })
           : null,
+        ...stationButtons(result.explanation, error),
         ladderFigure(result),
       ),
       panel(

@@ -166,7 +166,7 @@ function controlPanel() {
       {},
       'Writes the corrections of the machine that is chosen at the top in the format of its control. The machine has to meet the rules of ',
       el('a', { href: '#board' }, 'Safe to run?'),
-      ', or you accept those that it does not meet.',
+      ', or you accept those that it does not meet. Heights of a printer that follow the touches of its probe are written without these rules.',
     ),
     el('div', { class: 'controls' }, format, write),
     options,

@@ -5,7 +5,7 @@ import { option, optionFields } from './options.js';
 import { button, guarded, pageWords, panel } from './parts.js';
 
 export const kDeclareBed =
-  'The machine file must declare the bed that was touched. For a new machine file: "Make one by type and travels", options of new, write bed:plane into the field "artefact". For the chosen machine file: "These rows cannot be read", "Declare it".';
+  'A machine file for these touches declares the bed. If yours does not: for a new machine file, "Make one by type and travels", options of new, write bed:plane into the field "artefact". For the chosen machine file, "These rows cannot be read", "Declare it".';
 
 /**
  * Imports a file by a kind of `vernier import` that needs no table of columns: at once where it needs no further options, else its

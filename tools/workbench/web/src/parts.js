@@ -43,11 +43,15 @@ const toolWords = (whole, names) =>
 /** The button beside the rules of the safety sheet. */
 export const kMeasuredTravel = 'Reduce the travel to the measured range';
 
+/** The button that adds stations to a table; behind these words the axis and the distance. */
+export const kAddStations = 'Add stations: ';
+
 /** Notes and explanations of a result in the words of the page. */
 export const programWords = (words) =>
   words
     ?.replace(kTool, toolWords)
     .replace(/: vernier set \S+ --reflector -o NEW\.xml declares it/g, ': press "Declare the reflector"')
+    .replace(/with --steps (\S+), export klipper/g, 'with $1 in the field "steps", export klipper')
     .replace(/ \(vernier set --measured-travel\)/g, ` (press "${kMeasuredTravel}" under "Safe to run?")`)
     .replace(/declare it in the machine file \(vernier set MACHINE --reflector\)/g, `press "${kReflector}"`)
     .replace(
@@ -66,7 +70,7 @@ export const programWords = (words) =>
       /fit a machine file of vernier new --errors square, or fit the machine file from before the last fit again with --hold "([^"]+)" --free (\S+)/g,
       'make a new machine file with "square" in the field "errors" and fit it, or fit the machine file from before the last fit again with $1 in the field "hold" and $2 in the field "free" of the options of fit',
     )
-    .replace(/make the machine file with --stations (\S+) \(vernier new\)/g, 'make a new machine file with $1 in the field "stations"')
+    .replace(/ \(vernier set MACHINE --stations (\S+) -o NEW\)/g, ` (the button "${kAddStations}$1" under Diagnose, or in Add after a fit)`)
     .replace(
       / \(import table:? --set "([^"]+)"\)/g,
       ' under Project: press "read differently" beside the file, and write $1 into the field "set"',
