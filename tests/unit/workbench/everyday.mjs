@@ -419,6 +419,34 @@ async function caliper(page) {
   await page.click('#do-export');
   await words(page, '#export-result', 'write [include vernier_steppers.cfg] into printer.cfg below the sections of the steppers');
   await words(page, '#export-result', 'the shrinkage of its material');
+  await denserStations(page);
+}
+
+/** A wave of a screw between the stations of a table: the diagnosis has the button that adds stations and fits again. */
+async function denserStations(page) {
+  await view(page, 'project');
+  const from = join(source, 'tests/data/hidden/mill_wave');
+  const file = (name) => ({ name: name.replace('model', 'mill'), bytes: readFileSync(join(from, name)) });
+  await page.drop(['model.xml', 'survey_X.csv', 'survey_Y.csv', 'survey_Z.csv', 'survey_vol.csv'].map(file));
+  await chosen(page, 'mill.xml');
+  await measured(page, 'survey_X.csv + survey_Y.csv + survey_Z.csv + survey_vol.csv');
+  await words(page, '#command', 'compare mill.xml');
+  await view(page, 'diagnose');
+  await page.click('#run-diagnose');
+  await page.until("document.querySelector('#diagnosis .add-stations')", 'the button', 120);
+  await words(page, '#verdict', 'the button "Add stations: X=70"');
+  assert.ok(!(await text(page, '#verdict')).includes('--stations'));
+  await page.click('#diagnosis .add-stations');
+  await chosen(page, 'mill-stations-fitted.xml');
+  await page.until("document.querySelectorAll('#steps canvas').length === 1", 'the steps');
+  assert.equal(
+    (
+      readFileSync(join(folder, 'mill-stations-fitted.xml'), 'utf8')
+        .split('<table axis="Y"')[0]
+        .match(/<station /g) ?? []
+    ).length,
+    14,
+  );
 }
 
 /** On a small screen: what a format cannot express stands before the words of success, in sight, and with the last step of the path. */

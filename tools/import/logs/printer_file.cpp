@@ -803,8 +803,8 @@ ImportTable table_of(const std::string& file, const std::vector<Touch>& touches,
 /// A note with the rotation_distance of X, Y and Z, if the configuration has all three: export needs them.
 std::string note_of_steps(const std::map<std::string, Section>& sections) {
   std::vector<std::string> values;
-  for (const char* const axis : {"x", "y", "z"}) {
-    const auto section = sections.find(std::string("stepper_") + axis);
+  for (const char* const stepper : {"stepper_x", "stepper_y", "stepper_z"}) {
+    const auto section = sections.find(stepper);
     if (section == sections.end()) return {};
     const auto setting = section->second.find("rotation_distance");
     if (setting == section->second.end() || !text::parse_number(setting->second.value)) return {};
