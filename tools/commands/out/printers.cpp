@@ -216,7 +216,8 @@ void require_touches(const exchange::Bed& bed, const PrinterArguments& arguments
         "the fit took this plane as flat: touches of a probe beside the nozzle do "
         "not distinguish a bow of the bed from axes that are not straight. Give the touches (--touches "
         "FILE), "
-        "and a few touches of the nozzle if possible (a second --touches); --bed none leaves the bed out");
+        "and a few touches of the nozzle if possible (a second file for --touches); --bed none leaves the "
+        "bed out");
 }
 
 /// Errors by inputs, speed, travel since reversal and time: the files are those of one state.
@@ -311,7 +312,7 @@ void require_better_heights(const std::optional<exchange::TouchResidual>& touche
       "the heights would raise the deviation at the {} touches of the {} from {:.4g} to {:.4g} um rms: the "
       "errors of the fitted axes do not agree with these touches; nothing is written. Fit the touches of the "
       "bed alone (vernier fit MACHINE TOUCHES), and export that machine file; or give touches of the nozzle "
-      "(a second --touches)",
+      "(a second file for --touches)",
       touches->touches, touches->of_nozzle ? "nozzle" : "probe", touches->before_um, touches->after_um));
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <atomic>
 #include <chrono>
 #include <iterator>
 #include <optional>
 #include <thread>
 
 #include "tools/commands/command.h"
+#include "tools/commands/until_told.h"
 #include "tools/format/columns.h"
 #include "tools/model/machine.h"
 #include "tools/model/machine_reader.h"
@@ -56,7 +58,8 @@ void append(std::string& text, const upload::BoardTick& tick, const std::string&
   fmt::format_to(out, ",{}\n", run);
 }
 
-void run(const Arguments& arguments) {
+/// Records until the time is over or `stop` is set.
+void record(const Arguments& arguments, const std::atomic<bool>& stop) {
   using Clock = std::chrono::steady_clock;
   std::optional<model::Machine> machine;
   if (!arguments.machine.empty()) machine = model::read_machine(arguments.machine);
@@ -68,7 +71,7 @@ void run(const Arguments& arguments) {
   std::uint64_t next = client.newest().number;
   const auto end = next + static_cast<std::uint64_t>(arguments.seconds / tick_s);
   const auto start = Clock::now();
-  while (next < end) {
+  while (next < end && !stop) {
     const upload::BoardHistory history = client.history(next, static_cast<std::uint16_t>(arguments.every));
     lost += history.lost;
     for (const upload::BoardTick& tick : history.ticks) {
@@ -114,7 +117,15 @@ void register_record(CLI::App& vernier) {
   command->add_option("--run", arguments->run, "label of the run column")->default_val("record");
   command->add_option("--json", arguments->json,
                       "file for the result as JSON, for programs; - for standard output");
-  command->callback([arguments] { run(*arguments); });
+  command->footer(
+      "Ctrl-C (SIGINT) or SIGTERM ends the recording before its time; the file then has the rows until the "
+      "signal.\n"
+      "Exit status 0 done, 1 bad input, 2 the board did not answer within a second of the signal (nothing "
+      "written).");
+  command->callback([arguments] {
+    constexpr int kBoardIsSilent = 2;
+    until_told([&](const std::atomic<bool>& stop) { record(*arguments, stop); }, [] {}, kBoardIsSilent);
+  });
 }
 
 }  // namespace vernier::commands::record_cli

@@ -51,6 +51,7 @@ export const programWords = (words) =>
   words
     ?.replace(kTool, toolWords)
     .replace(/: vernier set \S+ --reflector -o NEW\.xml declares it/g, ': press "Declare the reflector"')
+    .replace(/; --bed none leaves the bed out/g, '; the word none in the field "bed" leaves the bed out')
     .replace(/with --steps (\S+), export klipper/g, 'with $1 in the field "steps", export klipper')
     .replace(/ \(vernier set --measured-travel\)/g, ` (press "${kMeasuredTravel}" under "Safe to run?")`)
     .replace(/declare it in the machine file \(vernier set MACHINE --reflector\)/g, `press "${kReflector}"`)
@@ -126,7 +127,8 @@ export function pageWords(said, typed) {
           ? `${value.startsWith('"') ? value : `"${value}"`} in ${field(name)}`
           : whole;
       })
-      .replace(/--([a-z][\w-]*)/g, (whole, name) => (has(name) ? field(name) : whole))
+      // What stands for a value is no word of a message.
+      .replace(/--([a-z][\w-]*)(?: (?:FILE|NAME|NUMBER)\b)?/g, (whole, name) => (has(name) ? field(name) : whole))
   );
 }
 
