@@ -96,13 +96,12 @@ std::vector<std::string> station_sentences(const diagnose::Diagnosis& diagnosis,
   const std::vector<lint::DensePoints> dense = lint::dense_points(machine, rows);
   std::set<std::string> axes;
   for (const diagnose::CandidateFinding& one : diagnosis.candidates) {
-    const auto& axis = one.candidate.choice.axis;
-    if (!axis || !one.why_not.starts_with(diagnose::kTestBetweenStations) ||
-        !axes.insert(machine.axes[*axis].name).second)
-      continue;
-    const std::string& name = machine.axes[*axis].name;
+    if (!one.axis) continue;
+    const std::string& name = machine.axes[*one.axis].name;
     const auto found = std::find_if(dense.begin(), dense.end(),
                                     [&](const lint::DensePoints& points) { return points.axis == name; });
+    const bool refused = one.why_not.starts_with(diagnose::kTestBetweenStations);
+    if (!(refused || (found != dense.end() && one.score > 0)) || !axes.insert(name).second) continue;
     sentences.push_back(
         found == dense.end()
             ? fmt::format("A curve between two stations of the table of {0} can be this error, and the "
@@ -110,9 +109,9 @@ std::vector<std::string> station_sentences(const diagnose::Diagnosis& diagnosis,
                           "positions, then add stations to the table (vernier set).",
                           name)
             : fmt::format(
-                  "A curve between two stations of the table of {0} can be this error: add stations "
-                  "to the table (vernier set MACHINE --stations {0}={1:.4g} -o NEW), fit and diagnose "
-                  "again, and compare the rms of the check rows.",
+                  "A curve between two stations of the table of {0} can be this error: add stations to the "
+                  "table (vernier set MACHINE --stations {0}={1:.4g} -o NEW), fit and diagnose again, and "
+                  "keep them unless the rms of the check rows is larger by more than a tenth with them.",
                   name, found->step));
   }
   return sentences;

@@ -53,7 +53,8 @@ diagnose::Diagnosis diagnose_and_estimate_noise(const std::string& text, const m
 std::vector<std::string> noise_sentences(const std::vector<fit::FileNoise>& noise);
 
 /// Sentences about axes whose table has so few stations that a curve between them can be the error that has
-/// no cause: with the call that adds stations, or that the axis has to be measured at more positions. Empty
+/// no cause (a candidate of the axis fails for it, or the points are much denser than the stations): with the
+/// call that adds stations, or that the axis has to be measured at more positions. Empty
 /// if the verdict names causes.
 std::vector<std::string> station_sentences(const diagnose::Diagnosis& diagnosis,
                                            const model::Machine& machine, const model::Measurement& rows);

@@ -8,7 +8,6 @@
 #include "tools/commands/command.h"
 #include "tools/commands/report_header.h"
 #include "tools/commands/survey.h"
-#include "tools/diagnose/between_stations.h"
 #include "tools/diagnose/causes.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/sentences.h"
@@ -98,11 +97,6 @@ void print_causes(std::FILE* out, const diagnose::Diagnosis& diagnosis) {
 /// What to do with effects that reduce the residual, if the verdict names no cause for all of it.
 void print_next_step(std::FILE* out, const diagnose::Diagnosis& d) {
   if (d.verdict != diagnose::Verdict::kUnexplained || d.candidates.empty()) return;
-  // What a curve between two stations can be has its own next step in the explanation.
-  if (std::ranges::any_of(d.candidates, [](const diagnose::CandidateFinding& one) {
-        return one.why_not.starts_with(diagnose::kTestBetweenStations);
-      }))
-    return;
   if (d.ladder.size() > 1)
     fmt::print(
         out,
@@ -147,8 +141,8 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
   diagnose::Diagnosis diagnosis = diagnose_and_estimate_noise(text, machine, m, noise, options);
   for (const std::string& sentence : noise_sentences(noise)) diagnosis.explanation += " " + sentence;
-  for (const std::string& sentence : station_sentences(diagnosis, machine, m))
-    diagnosis.explanation += " " + sentence;
+  const std::vector<std::string> stations = station_sentences(diagnosis, machine, m);
+  for (const std::string& sentence : stations) diagnosis.explanation += " " + sentence;
   for (const std::string& sentence : column_sentences) diagnosis.explanation += " " + sentence;
   diagnosis.next_measurement = plan::advice_for(text, machine, m, diagnosis, options.effects);
   const nlohmann::ordered_json json = results::diagnosis_json(diagnosis, m);
@@ -167,7 +161,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   print_ladder(out, diagnosis, m);
   fmt::print(out, "\n");
   print_candidates(out, diagnosis);
-  print_next_step(out, diagnosis);
+  if (stations.empty()) print_next_step(out, diagnosis);  // otherwise the explanation has the next step
   for (const std::string& next : diagnosis.next_measurement) fmt::print(out, "measure next: {}\n", next);
 }
 
