@@ -45,7 +45,7 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
 std::string missing_set_up(const model::Machine& machine, const model::Measurement& rows, double misfit_mm);
 
 /// Returns a sentence if the residual of a file is hundreds of times the standard uncertainty u of its
-/// readings: probably u is in another unit. Otherwise an empty text.
+/// readings, and this u is below 0.05 um: probably u is in another unit. Otherwise an empty text.
 std::string unbelievable_u(const model::Measurement& measurement, const Eigen::VectorXd& residual);
 
 /// Tests for a collapsed machine: touches of unknown points agree best if the machine does not move the tool

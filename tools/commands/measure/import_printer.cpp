@@ -55,8 +55,7 @@ double stated_u_um(const std::string& words) {
   if (um < kLeast_um)
     throw text::InputError(
         fmt::format("--u {}: a touch of a printer is not as accurate as {:g} um. A number without unit is in "
-                    "um: for {:g} "
-                    "mm state --u {:g}",
+                    "um: for {:g} mm state --u {:g}",
                     words, um, um, um * maths::kUmPerMm));
   return um;
 }
