@@ -403,6 +403,14 @@ TEST_F(ImportRemedies, ARepeatedPoseThatContradictsIsNamedByImportLintAndFit) {
 TEST_F(ImportRemedies, TheDirectionsOfPointsFollowFromTheOrderOfTheirList) {
   text::write_file(folder + "/points.txt", "P1 0 0 0\nP2 100 0 0\nP3 50 20 0\n");
   text::write_file(folder + "/list.csv", "point,X[mm],Y[mm]\nP1,0,0\nP2,100,0\nP3,50,20\n");
+  const std::string note =
+      "note: the rows have no directions of the motion (dirX, dirY), and a fit needs them";
+  ASSERT_EQ(
+      run("vernier import tracker points.txt --nominal list.csv --machine m.xml --column 1=point --column "
+          "'2=x[mm]' --column '3=y[mm]' --column '4=z[mm]' -o read.csv"),
+      0)
+      << said;
+  EXPECT_THAT(said, HasSubstr(note));
   ASSERT_EQ(
       run("vernier import tracker points.txt --nominal list.csv --machine m.xml --column 1=point --column "
           "'2=x[mm]' --column '3=y[mm]' --column '4=z[mm]' --directions from-order -o read.csv"),
@@ -411,6 +419,7 @@ TEST_F(ImportRemedies, TheDirectionsOfPointsFollowFromTheOrderOfTheirList) {
   EXPECT_THAT(text::read_file(folder + "/read.csv"),
               testing::AllOf(HasSubstr("dirX,dirY\n"), HasSubstr("P2,100,0,0,1,0\n"),
                              HasSubstr("P3,50,20,0,-1,1\n")));
+  EXPECT_THAT(said, testing::Not(HasSubstr(note)));
 }
 
 // The lines of the tracker have another order than the measurement, and P2 is lost.

@@ -21,6 +21,8 @@ const german = {
     'Möglicherweise war die Messung gestört: eine Drift von 273 µm. Ein fehlender Effekt (etwa ein Umkehrspiel) kann wie diese Störung aussehen: vernier diagnose vergleicht die Ursachen.',
   'X carriage: backlash, reversal value B 8.0 ± 0.3 µm. The BIC of the next best cause, Y carriage: drift of the base or the instrument along X, is higher by 54. Beside it: Y carriage: backlash. With 2 effects the rms of the check rows (held-out rows) changes from 4.966 to 4.857 µm.':
     'X-Schlitten: Umkehrspiel, Umkehrspanne B 8,0 ± 0,3 µm. Das BIC der nächstbesten Ursache, Y-Schlitten: Drift der Grundlage oder des Messgeräts entlang X, ist um 54 höher. Außerdem: Y-Schlitten: Umkehrspiel. Mit 2 Effekten ändert sich der Effektivwert der Prüfzeilen von 4,966 auf 4,857 µm.',
+  'A curve between two stations of the table of X can be this error: add stations to the table (vernier set MACHINE --stations X=70 -o NEW), fit and diagnose again, and keep them unless the rms of the check rows is larger by more than a tenth with them.':
+    'Eine Kurve zwischen zwei Stützstellen der Tabelle von X kann dieser Fehler sein: fügen Sie der Tabelle Stützstellen hinzu (vernier set MACHINE --stations X=70 -o NEW), passen Sie an und diagnostizieren Sie erneut, und behalten Sie die Stützstellen, sofern der Effektivwert der Prüfzeilen mit ihnen nicht um mehr als ein Zehntel größer ist.',
   'Level 0.95: the true cause is rejected at most one time in 20.':
     'Niveau 0,95: die wahre Ursache wird höchstens einmal in 20 Fällen ausgeschlossen.',
   'X error repeats every 248.6 mm of X with an amplitude of 0.946 um; at positions 50 mm apart, the periods 62.59 and 41.63 mm give the same readings, in all runs.':

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <set>
 
@@ -239,6 +240,25 @@ std::string note_of_order(const std::vector<std::string>& columns, const SurveyA
       arguments.nominal.empty() ? "" : ", also of the motion to a position without a point");
 }
 
+/// A note about linear axes that move and have no direction; empty: none.
+std::string note_without_directions(const importer::ImportTable& table, const model::Machine& machine) {
+  std::vector<std::string> missing;
+  for (const model::Axis& axis : machine.axes) {
+    const std::string sense = format::axis_column(format::AxisQuantity::kSense, axis.name);
+    if (axis.rotary || table.find(axis.name) == nullptr || table.find(sense) != nullptr) continue;
+    const std::vector<std::string>& cells = table.find(axis.name)->cells;
+    if (std::adjacent_find(cells.begin(), cells.end(), std::not_equal_to<>()) != cells.end())
+      missing.push_back(sense);
+  }
+  if (missing.empty()) return {};
+  return fmt::format(
+      "the rows have no directions of the motion ({}), and a fit needs them for a backlash: if the rows are "
+      "in "
+      "the order of the measurement, import the file again with the directions (option --directions "
+      "from-order of vernier import)",
+      text::joined(missing, ", "));
+}
+
 /// The table with the positions of the axes, and where they came from.
 struct Survey {
   importer::ImportTable table;
@@ -337,6 +357,10 @@ void run_survey(const std::string& kind_name, const SurveyArguments& arguments, 
             ? importer::add_directions_of_list(table, survey.joined->list, survey.joined->rows, is_axis)
             : importer::add_directions_from_order(table, is_axis),
         arguments));
+  } else if (!arguments.machine.empty()) {
+    if (std::string note = note_without_directions(table, model::read_machine(arguments.machine));
+        !note.empty())
+      survey.notes.push_back(std::move(note));
   }
   if (arguments.check_every > 0) importer::set_roles(table, arguments.check_every);
   write_survey(kind_name, arguments, survey);

@@ -139,7 +139,7 @@ function controlPanel() {
             `${files.some((name) => /readme/i.test(name)) ? 'README says how the control reads the files. ' : ''}Press a name to save the file.`,
         );
         store.exported = store.machine;
-        store.leftOut = (state.result.left_out ?? []).map((one) => one.what);
+        store.leftOut = (state.result.left_out ?? []).map((one) => onPage(one.what));
         emit('uploaded');
       }),
     { id: 'do-export' },

@@ -117,7 +117,11 @@ export function guide() {
         ),
       ),
     );
-    const written = `The files for the control are written${store.leftOut.length ? `, without: ${store.leftOut.join('; ')}` : ''}.`;
+    // The whole list stands under Export.
+    const kNamed = 2,
+      rest = store.leftOut.length - kNamed;
+    const without = [...store.leftOut.slice(0, kNamed), ...(rest > 0 ? [`${rest} more, listed under Export`] : [])].join('; ');
+    const written = `The files for the control are written${without ? `, without: ${without}` : ''}.`;
     hint.replaceChildren(...[next ? next[4]() : store.uploaded ? 'The correction runs.' : written].flat());
   };
   for (const event of ['project', 'rows', 'compared', 'diagnosed', 'steps', 'safety', 'uploaded', 'view']) on(event, draw);
