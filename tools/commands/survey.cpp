@@ -89,10 +89,10 @@ std::vector<std::string> noise_sentences(const std::vector<fit::FileNoise>& nois
   return list;
 }
 
-std::vector<std::string> station_sentences(const diagnose::Diagnosis& diagnosis,
-                                           const model::Machine& machine, const model::Measurement& rows) {
-  std::vector<std::string> sentences;
-  if (diagnosis.verdict != diagnose::Verdict::kUnexplained) return sentences;
+StationAdvice station_advice(const diagnose::Diagnosis& diagnosis, const model::Machine& machine,
+                             const model::Measurement& rows) {
+  StationAdvice advice;
+  if (diagnosis.verdict != diagnose::Verdict::kUnexplained) return advice;
   const std::vector<lint::DensePoints> dense = lint::dense_points(machine, rows);
   std::set<std::string> axes;
   for (const diagnose::CandidateFinding& one : diagnosis.candidates) {
@@ -100,21 +100,24 @@ std::vector<std::string> station_sentences(const diagnose::Diagnosis& diagnosis,
     const std::string& name = machine.axes[*one.axis].name;
     const auto found = std::find_if(dense.begin(), dense.end(),
                                     [&](const lint::DensePoints& points) { return points.axis == name; });
+    const bool more = found != dense.end() && !found->one_column;
     const bool refused = one.why_not.starts_with(diagnose::kTestBetweenStations);
-    if (!(refused || (found != dense.end() && one.score > 0)) || !axes.insert(name).second) continue;
-    sentences.push_back(
-        found == dense.end()
-            ? fmt::format("A curve between two stations of the table of {0} can be this error, and the "
-                          "measurements are not dense enough for more stations: measure {0} alone at more "
-                          "positions, then add stations to the table (vernier set).",
-                          name)
-            : fmt::format(
-                  "A curve between two stations of the table of {0} can be this error: add stations to the "
-                  "table (vernier set MACHINE --stations {0}={1:.4g} -o NEW), fit and diagnose again, and "
-                  "keep them unless the rms of the check rows is larger by more than a tenth with them.",
-                  name, found->step));
+    if (!(refused || (more && one.score > 0)) || !axes.insert(name).second) continue;
+    std::string sentence =
+        fmt::format("A curve between two stations of the table of {} can be this error", name);
+    if (more)
+      sentence += fmt::format(
+          ": add stations to the table (vernier set MACHINE --stations {}={:.4g} -o NEW), fit and diagnose "
+          "again, and keep them unless the rms of the check rows is larger by more than a tenth with them",
+          name, found->step);
+    else if (found == dense.end())
+      sentence += fmt::format(
+          ", and the measurements are not dense enough for more stations: measure {} alone at more positions",
+          name);
+    advice.sentences.push_back(sentence + ".");
+    advice.has_call = advice.has_call || more;
   }
-  return sentences;
+  return advice;
 }
 
 }  // namespace vernier::commands

@@ -52,11 +52,15 @@ diagnose::Diagnosis diagnose_and_estimate_noise(const std::string& text, const m
 /// Sentences about the estimates of u, for an explanation.
 std::vector<std::string> noise_sentences(const std::vector<fit::FileNoise>& noise);
 
-/// Sentences about axes whose table has so few stations that a curve between them can be the error that has
-/// no cause (a candidate of the axis fails for it, or the points are much denser than the stations): with the
-/// call that adds stations, or that the axis has to be measured at more positions. Empty
-/// if the verdict names causes.
-std::vector<std::string> station_sentences(const diagnose::Diagnosis& diagnosis,
-                                           const model::Machine& machine, const model::Measurement& rows);
+/// Axes whose table has so few stations that a curve between them can be the error that has no cause.
+struct StationAdvice {
+  std::vector<std::string> sentences;
+  bool has_call = false;  // true: a sentence has the call that adds stations
+};
+/// Returns what can be said about stations: an axis is named if a candidate of the axis fails because of its
+/// stations, or if the points are much denser than the stations and measure all fitted columns of the table.
+/// Empty if the verdict names causes.
+StationAdvice station_advice(const diagnose::Diagnosis& diagnosis, const model::Machine& machine,
+                             const model::Measurement& rows);
 
 }  // namespace vernier::commands

@@ -129,9 +129,11 @@ TEST(Diagnose, ACurveBetweenStationsHasOneNextStep) {
   ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
   const std::string words = text::read_file(said);
   EXPECT_THAT(words, HasSubstr("verdict: unexplained"));
-  EXPECT_THAT(words, HasSubstr("vernier set MACHINE --stations X=70 -o NEW"));
+  EXPECT_THAT(words, HasSubstr("A curve between two stations of the table of X can be this error."));
+  // The laser measures one of six columns: stations for all of them made new poses of another such mill 44 %
+  // worse.
+  EXPECT_THAT(words, Not(HasSubstr("--stations")));
   EXPECT_THAT(words, Not(HasSubstr("vernier add 'cyclic-error")));
-  EXPECT_THAT(words, Not(HasSubstr("X=100")));
   fs::remove(said);
 }
 

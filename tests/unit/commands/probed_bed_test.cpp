@@ -285,6 +285,15 @@ TEST_F(ProbedBed, TheFitThatAnExportOffersMeasuresTheSquarenessAndBothScales) {
               0)
         << said;
   const auto offered = nlohmann::json::parse(text::read_file(folder + "/all.json"))["fit_again"];
+  ASSERT_EQ(run("vernier fit all.xml square.csv -o all-fit.xml --json fit.json"), 0) << said;
+  EXPECT_THAT(said,
+              HasSubstr("note: To measure squareness and scales with the distances of a printed square"));
+  EXPECT_EQ(nlohmann::json::parse(text::read_file(folder + "/fit.json"))["fit_again"], offered);
+  // The numbers of another firmware have another meaning.
+  EXPECT_EQ(run("vernier export klipper all-fit.xml -o no --touches bed.csv --steps 80,80,400"), 1) << said;
+  EXPECT_THAT(said, HasSubstr("these look like steps per mm"));
+  EXPECT_EQ(run("vernier export marlin all-fit.xml -o no --touches bed.csv --steps 40,40,8"), 1) << said;
+  EXPECT_THAT(said, HasSubstr("these look like the rotation_distance of Klipper"));
   EXPECT_FALSE(nlohmann::json::parse(text::read_file(folder + "/square.json")).contains("fit_again"));
   const auto listed = [&](const char* option) {
     std::string words;
@@ -297,6 +306,7 @@ TEST_F(ProbedBed, TheFitThatAnExportOffersMeasuresTheSquarenessAndBothScales) {
             0)
       << said;
   EXPECT_FALSE(nlohmann::json::parse(text::read_file(folder + "/again.json")).contains("fit_again"));
+  EXPECT_THAT(said, Not(HasSubstr("note: To measure squareness")));
   const auto number = [&](const std::string& file, const std::string& name, std::size_t which) {
     const std::string text = text::read_file(folder + "/" + file);
     std::size_t at = 0;

@@ -246,7 +246,7 @@ async function printer(page) {
     { length: 5 },
     (_, j) => `#*# \t  ${Array.from({ length: 5 }, (__, i) => (0.02 * i - 0.01 * j + 0.003 * i * i).toFixed(6)).join(', ')}\n`,
   ).join('');
-  const config = `[printer]\nkinematics: cartesian\n[probe]\nx_offset: -38\ny_offset: -8\n#*# [bed_mesh default]\n#*# version = 1\n#*# points =\n${mesh}#*# x_count = 5\n#*# y_count = 5\n#*# mesh_x_pps = 2\n#*# mesh_y_pps = 2\n#*# algo = bicubic\n#*# tension = 0.2\n#*# min_x = 40.0\n#*# max_x = 180.0\n#*# min_y = 30.0\n#*# max_y = 180.0\n`;
+  const config = `[printer]\nkinematics: cartesian\n[stepper_x]\nrotation_distance: 40\n[stepper_y]\nrotation_distance: 40\n[stepper_z]\nrotation_distance: 8\n[probe]\nx_offset: -38\ny_offset: -8\n#*# [bed_mesh default]\n#*# version = 1\n#*# points =\n${mesh}#*# x_count = 5\n#*# y_count = 5\n#*# mesh_x_pps = 2\n#*# mesh_y_pps = 2\n#*# algo = bicubic\n#*# tension = 0.2\n#*# min_x = 40.0\n#*# max_x = 180.0\n#*# min_y = 30.0\n#*# max_y = 180.0\n`;
   await page.drop([{ name: 'printer.cfg', text: config }]);
   await measured(page, 'printer_read.csv');
   await words(page, '#import-box', '25 touches of the artefact "bed"');
@@ -264,7 +264,7 @@ async function printer(page) {
   await page.click('#make-machine');
   await chosen(page, 'with_bed.xml');
   assert.ok(readFileSync(join(folder, 'with_bed.xml'), 'utf8').includes('<artefact name="bed" type="plane"/>'));
-  await page.until("document.getElementById('begin').hidden", 'the rows to be read');
+  await page.until("document.getElementById('begin-steps').hidden", 'the rows to be read');
   // The machine file without a bed gets one too.
   const choose = (machine) =>
     page.evaluate(
@@ -276,7 +276,7 @@ async function printer(page) {
   await chosen(page, 'printer_touched.xml');
   assert.ok(readFileSync(join(folder, 'printer_touched.xml'), 'utf8').includes('<artefact name="bed" type="plane"/>'));
   await choose('with_bed.xml');
-  await page.until("document.getElementById('begin').hidden", 'the rows to be read');
+  await page.until("document.getElementById('begin-steps').hidden", 'the rows to be read');
   // Read with another offset: the field is there.
   await page.click('#read-differently');
   await page.type('#import-box [data-option=u]', '5');
@@ -351,10 +351,13 @@ async function squareOfAPrinter(page) {
   await view(page, 'add');
   await page.click('#fit');
   await chosen(page, 'with_bed-fitted-2.xml');
+  await words(page, '#fit-notes', 'These readings do not determine the squareness beside all other errors');
+  assert.equal(await text(page, '#fit-square'), 'Fit the squareness and these scales alone');
   await view(page, 'export');
   await page.choose('#export-format', 'klipper');
   await page.type('#view-export [data-option=touches]', 'printer_read.csv');
-  await page.type('#view-export [data-option=steps]', '40,40,8');
+  // As printer.cfg has it.
+  await page.until("document.querySelector('#view-export [data-option=steps]').value === '40,40,8'", 'the rotation_distance');
   await page.click('#do-export');
   await words(page, '#export-result', 'of with_bed.xml the other errors stay as they are');
   assert.ok(!/vernier (new|fit|import)|--[a-z]/.test(await text(page, '#export-result')), await text(page, '#export-result'));
@@ -422,31 +425,34 @@ async function caliper(page) {
   await denserStations(page);
 }
 
-/** A wave of a screw between the stations of a table: the diagnosis has the button that adds stations and fits again. */
+/** A laser whose points are denser than the stations of the only column of the table: the fit has the button that adds stations. */
 async function denserStations(page) {
   await view(page, 'project');
-  const from = join(source, 'tests/data/hidden/mill_wave');
-  const file = (name) => ({ name: name.replace('model', 'mill'), bytes: readFileSync(join(from, name)) });
-  await page.drop(['model.xml', 'survey_X.csv', 'survey_Y.csv', 'survey_Z.csv', 'survey_vol.csv'].map(file));
-  await chosen(page, 'mill.xml');
-  await measured(page, 'survey_X.csv + survey_Y.csv + survey_Z.csv + survey_vol.csv');
-  await words(page, '#command', 'compare mill.xml');
-  await view(page, 'diagnose');
-  await page.click('#run-diagnose');
-  await page.until("document.querySelector('#diagnosis .add-stations')", 'the button', 120);
-  await words(page, '#verdict', 'the button "Add stations: X=70"');
-  assert.ok(!(await text(page, '#verdict')).includes('--stations'));
-  await page.click('#diagnosis .add-stations');
-  await chosen(page, 'mill-stations-fitted.xml');
-  await page.until("document.querySelectorAll('#steps canvas').length === 1", 'the steps');
-  assert.equal(
-    (
-      readFileSync(join(folder, 'mill-stations-fitted.xml'), 'utf8')
-        .split('<table axis="Y"')[0]
-        .match(/<station /g) ?? []
-    ).length,
-    14,
+  const stations = [0, 200, 400, 600].map((at) => `<station loc="${at}"/>`).join('');
+  const rows = [0, 1, 2, 3].flatMap((run) =>
+    Array.from(
+      { length: 25 },
+      (_, i) => `${25 * i},${(25 * i + 0.003 * Math.sin((25 * i) / 40) + 0.0002 * ((i + run) % 3)).toFixed(5)},${run},1`,
+    ),
   );
+  await page.drop([
+    {
+      name: 'bench.xml',
+      text: `<machine name="bench"><variables><machineaxes><X min="0" max="600"/></machineaxes><comptables><table axis="X" fit="X">${stations}</table></comptables></variables><transforms><sixdof X="X+lXx"/></transforms></machine>`,
+    },
+    { name: 'laser.csv', text: `X[mm],x[mm],run,u[um]\n${rows.join('\n')}\n` },
+  ]);
+  await chosen(page, 'bench.xml');
+  await measured(page, 'laser.csv');
+  await words(page, '#command', 'compare bench.xml');
+  await view(page, 'add');
+  await page.click('#fit');
+  await words(page, '#fit-notes', 'the button "Add stations: X=25"');
+  assert.ok(!(await text(page, '#fit-notes')).includes('--stations'));
+  await page.click('#fit-notes .add-stations');
+  await chosen(page, 'bench-stations-fitted.xml');
+  await page.until("document.querySelectorAll('#steps canvas').length === 1", 'the steps');
+  assert.equal((readFileSync(join(folder, 'bench-stations-fitted.xml'), 'utf8').match(/<station /g) ?? []).length, 25);
 }
 
 /** On a small screen: what a format cannot express stands before the words of success, in sight, and with the last step of the path. */

@@ -105,7 +105,7 @@ async function aMachineOfOnesOwn(page) {
   await page.click('#make-machine');
   await page.until("document.getElementById('machine').value === 'router.xml'", 'the machine file');
   assert.ok(existsSync(join(folder, 'router_survey.csv')));
-  await page.until("document.getElementById('begin').hidden", 'the beginning to be over');
+  await page.until("document.getElementById('begin-steps').hidden", 'the beginning to be over');
   await view(page, 'compare');
   await page.until("document.getElementById('compare-figures')", 'the comparison');
   // The set-up is fitted before anything is compared: no offset of the instrument stands for a failure.

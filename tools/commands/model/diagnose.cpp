@@ -141,8 +141,8 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
   diagnose::Diagnosis diagnosis = diagnose_and_estimate_noise(text, machine, m, noise, options);
   for (const std::string& sentence : noise_sentences(noise)) diagnosis.explanation += " " + sentence;
-  const std::vector<std::string> stations = station_sentences(diagnosis, machine, m);
-  for (const std::string& sentence : stations) diagnosis.explanation += " " + sentence;
+  const StationAdvice stations = station_advice(diagnosis, machine, m);
+  for (const std::string& sentence : stations.sentences) diagnosis.explanation += " " + sentence;
   for (const std::string& sentence : column_sentences) diagnosis.explanation += " " + sentence;
   diagnosis.next_measurement = plan::advice_for(text, machine, m, diagnosis, options.effects);
   const nlohmann::ordered_json json = results::diagnosis_json(diagnosis, m);
@@ -161,7 +161,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   print_ladder(out, diagnosis, m);
   fmt::print(out, "\n");
   print_candidates(out, diagnosis);
-  if (stations.empty()) print_next_step(out, diagnosis);  // otherwise the explanation has the next step
+  if (!stations.has_call) print_next_step(out, diagnosis);  // otherwise the explanation has the next step
   for (const std::string& next : diagnosis.next_measurement) fmt::print(out, "measure next: {}\n", next);
 }
 

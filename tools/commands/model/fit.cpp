@@ -7,6 +7,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/other_readings.h"
+#include "tools/commands/out/square_fit.h"
 #include "tools/commands/survey.h"
 #include "tools/exchange/tip_link.h"
 #include "tools/fit/coverage/domain.h"
@@ -184,6 +185,13 @@ fit::Prior prior_of(const std::string& text) {
   return {text.substr(0, at), *std};
 }
 
+/// True if the survey of a machine with touched objects has distances between points: a printed square.
+bool has_square(const model::Machine& machine, const model::Measurement& m) {
+  return !machine.artefacts.empty() && std::ranges::any_of(m.observations, [](const model::Observation& one) {
+    return one.kind == format::ReadingKind::kDistance;
+  });
+}
+
 /// The remedy if a free tool point explains most of the residual of a fit; otherwise empty.
 std::string unknown_tool(const model::Machine& machine, const model::Measurement& m, fit::FitOptions options,
                          const fit::FitResult& held) {
@@ -243,8 +251,17 @@ void run_fit(const FitArguments& arguments) {
     fmt::print(stderr, "note: {}\n", note);
   }
   for (const lint::DensePoints& points : lint::dense_points(result.machine, m)) {
+    if (points.one_column) continue;  // what to do is not certain before a diagnosis
     json["notes"].push_back(lint::dense_points_text(points) + ": " + lint::dense_points_remedy(points));
     fmt::print(stderr, "note: {}\n", json["notes"].back().get<std::string>());
+  }
+  if (has_square(machine, m) && square_is_open(result.machine)) {
+    const FitOfSquare again = fit_of_square(result.machine);
+    if (!again.hold.empty()) {
+      json["fit_again"] = {{"hold", again.hold}, {"free", again.free}};
+      json["notes"].push_back(remedy_of_unmeasured(again));
+      fmt::print(stderr, "note: {}\n", remedy_of_unmeasured(again));
+    }
   }
   const std::vector<std::string> places = exchange::tool_shift_places(result.machine, text);
   for (const std::string& one : places) json["notes"].push_back(one);

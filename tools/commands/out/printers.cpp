@@ -13,6 +13,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/fit_findings.h"
 #include "tools/commands/out/exporting.h"
+#include "tools/commands/out/square_fit.h"
 #include "tools/effects/probe_offset.h"
 #include "tools/exchange/printer/correction.h"
 #include "tools/exchange/printer/firmware_files.h"
@@ -62,7 +63,7 @@ std::string profile_of(const PrinterArguments& arguments) {
   return arguments.profile.empty() ? "vernier" : arguments.profile;
 }
 
-exchange::PresentSetting present_of(const PrinterArguments& arguments) {
+exchange::PresentSetting present_of(const PrinterArguments& arguments, Firmware firmware) {
   exchange::PresentSetting present;
   present.profile = profile_of(arguments);
   if (arguments.steps.empty()) return present;
@@ -70,6 +71,17 @@ exchange::PresentSetting present_of(const PrinterArguments& arguments) {
   for (const double number : numbers)
     if (!(number > 0))
       throw text::InputError(fmt::format("--steps: '{}' must be three positive numbers", arguments.steps));
+  // The spindle of Z turns more often for a millimetre than the belts of X and Y: less of a rotation
+  // distance, more steps.
+  const bool per_turn = firmware == Firmware::kKlipper;
+  if (per_turn ? numbers[2] > 1.5 * numbers[0] : firmware != Firmware::kGrbl && numbers[2] < numbers[0] / 1.5)
+    throw text::InputError(fmt::format("--steps {}: {} Give {}", arguments.steps,
+                                       per_turn ? "these look like steps per mm, and Klipper has the "
+                                                  "rotation_distance of each stepper, mm per turn."
+                                                : "these look like the rotation_distance of Klipper, mm per "
+                                                  "turn, and this firmware has steps per mm.",
+                                       per_turn ? "those of printer.cfg, such as 40,40,8"
+                                                : "those that the printer prints (M503), such as 80,80,400"));
   present.steps = {numbers[0], numbers[1], numbers[2]};
   return present;
 }
@@ -124,50 +136,6 @@ void add_left_out_of_bed(std::vector<exchange::LeftOut>& left, const exchange::B
          "the shape of the bed from the straightness of a carriage (touch some points with the "
          "nozzle)",
          bed.shape->undetermined_um});
-}
-
-/// A fit that measures the squareness of Y to X and the scales of X and Y with the distances of a printed
-/// square: `hold` and `free` of `fit`. Both are empty if the last fit determined all other parameters.
-struct FitOfSquare {
-  std::vector<std::string> hold, free;
-};
-
-/// The distances determine a few numbers. Each table without an entry that the readings determined can stand
-/// for these numbers (yaw of Y: the squareness), so it is held too.
-FitOfSquare fit_of_square(const model::Machine& machine) {
-  const std::string open = safety::not_measured(machine);
-  if (open.empty()) return {};
-  const model::FitRecord& record = *machine.fitted;
-  FitOfSquare fit;
-  std::set<std::string> determined;
-  for (std::size_t i = 0; i < std::min(record.parameters.size(), record.origins.size()); ++i)
-    if (record.origins[i] == fit::origin_name(fit::Origin::kData))
-      determined.insert(model::without_station(record.parameters[i]));
-  const std::vector<std::string> not_measured = text::parts_of(open, ',');
-  constexpr std::string_view kAboutZ = "EC0";  // an angle between axes about Z: what the square measures
-  for (const std::string& parameter : record.parameters) {
-    const std::string name = model::without_station(parameter);
-    const bool table = name != parameter;
-    const bool open_static =
-        std::find(not_measured.begin(), not_measured.end(), name) != not_measured.end() &&
-        !name.starts_with(kAboutZ);
-    if ((table ? !determined.contains(name) : open_static) &&
-        std::find(fit.hold.begin(), fit.hold.end(), name) == fit.hold.end())
-      fit.hold.push_back(name);
-  }
-  for (const char* const axis : exchange::kLetters)
-    if (axis != exchange::kLetters.back()) fit.free.push_back(fmt::format("scalefactor.{}", axis));
-  return fit;
-}
-
-/// How to measure squareness and scales that the last fit did not measure; empty: nothing to hold.
-std::string remedy_of_unmeasured(const FitOfSquare& fit) {
-  if (fit.hold.empty()) return "";
-  return fmt::format(
-      "To measure squareness and scales with the distances of a printed square, fit a machine file of "
-      "vernier new --errors square, or fit the machine file from before the last fit again with --hold "
-      "\"{}\" --free {}",
-      fmt::join(fit.hold, ","), fmt::join(fit.free, ","));
 }
 
 /// Skews and steps that the files do not contain, because the last fit did not measure them.
@@ -462,7 +430,7 @@ void add_scales_without_steps(std::vector<exchange::LeftOut>& left, const Printe
 
 void export_printer(const PrinterArguments& arguments, Firmware firmware, const char* name) {
   const ExchangeArguments& common = arguments.common;
-  const exchange::PresentSetting present = present_of(arguments);
+  const exchange::PresentSetting present = present_of(arguments, firmware);
   if (firmware == Firmware::kGrbl && !present.steps)
     throw text::InputError(
         "grbl can store only steps per mm: give the present steps per mm with --steps X,Y,Z");

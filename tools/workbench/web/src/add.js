@@ -3,7 +3,7 @@ import { choice, el, table, tiles } from '../../../report/web/src/dom.js';
 import { number, printed } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, getJson, postBlob, postJson, refresh, run } from './api.js';
 import { fallingFigure } from './charts.js';
-import { button, gate, guarded, kAddStations, needsSubject, panel, programWords, showError } from './parts.js';
+import { button, gate, guarded, kAddStations, kFitSquare, needsSubject, panel, programWords, showError } from './parts.js';
 import { moreOptions } from './options.js';
 import { parameterPanel } from './parameters.js';
 import { redrawAll } from './plot.js';
@@ -14,6 +14,11 @@ import { emit, on, store } from './store.js';
 import { termPanel } from './term.js';
 
 const { steps } = store;
+
+/** How the note of a fit begins whose readings leave the squareness open; what the page says instead, beside its button. */
+const kOfSquare = 'To measure squareness and scales ';
+const kSquareAlone =
+  'These readings do not determine the squareness beside all other errors. If the distances of a printed square were measured, they determine the squareness and the scales of X and Y alone:';
 
 const unfitted = (machine) => machine.replace(/(-fitted(-\d+)?)?\.xml$/i, '');
 
@@ -29,14 +34,27 @@ async function fitInto(machine, label, options = {}) {
   const { result } = await run({ command: 'fit', ...measured(), machine, ...options, output });
   note(label, output, result);
   await choose(output, store.measurements);
-  notesOfFit(machine, label, options, result.notes ?? []);
+  notesOfFit(machine, label, options, result.notes ?? [], result.fit_again);
   return result;
 }
 
 /** What the fit says beside its figures; a tool point that is not known is fitted with a button. */
-function notesOfFit(machine, label, options, notes) {
+function notesOfFit(machine, label, options, notes, again) {
   const box = document.getElementById('fit-notes');
-  box.replaceChildren(...notes.map((one) => el('p', { class: 'note', role: 'status' }, printed(programWords(one)))));
+  const square = again?.hold?.length;
+  box.replaceChildren(
+    ...notes
+      .map((one) => (square && one.startsWith(kOfSquare) ? kSquareAlone : printed(programWords(one))))
+      .map((one) => el('p', { class: 'note', role: 'status' }, one)),
+  );
+  if (square)
+    box.append(
+      el(
+        'div',
+        { class: 'controls' },
+        button(kFitSquare, () => guarded(box, () => fitInto(machine, 'squareness and scales alone', again)), { id: 'fit-square' }),
+      ),
+    );
   const denser = stationButtons(notes.join(' '), document.getElementById('add-error'));
   if (denser.length) box.append(el('div', { class: 'controls' }, denser));
   if (notes.length) box.scrollIntoView({ block: 'nearest' });

@@ -7,6 +7,9 @@ import { button, guarded, panel } from './parts.js';
 import { kReflector } from './reflector.js';
 import { on, store } from './store.js';
 
+/** The panel that makes a machine file; texts name it. */
+export const kMakeOne = 'Make one by type and travels';
+
 /** Makes a machine file and an empty survey: `vernier new`. */
 function newMachine(choose) {
   const error = el('div', {});
@@ -64,7 +67,8 @@ function newMachine(choose) {
 export function beginPanel(choose) {
   const made = newMachine(choose);
   const steps = el('ol', { id: 'begin-steps' });
-  const made_panel = el('details', { id: 'new-machine' }, el('summary', {}, 'No machine file yet? Make one by type and travels'), made);
+  const summary = el('summary', {});
+  const made_panel = el('details', { id: 'new-machine' }, summary, made);
   const root = panel('Begin', steps, made_panel);
   root.id = 'begin';
   const draw = () => {
@@ -80,7 +84,9 @@ export function beginPanel(choose) {
       item(false, 'Then go to Compare: where the model fails, and from there along the path at the top.'),
     );
     // Rows that this machine cannot read may need another one.
-    root.hidden = machine && rows && !store.refusal;
+    steps.hidden = machine && rows && !store.refusal;
+    root.querySelector('h2').hidden = steps.hidden;
+    summary.textContent = `${machine ? 'Another machine file?' : 'No machine file yet?'} ${kMakeOne}`;
     made_panel.open ||= rows && !machine;
   };
   on('project', draw);

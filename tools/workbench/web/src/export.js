@@ -5,7 +5,7 @@ import { number } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, run } from './api.js';
 import { reportHead } from './handover.js';
 import { optionFields } from './options.js';
-import { button, gate, guarded, panel, programWords } from './parts.js';
+import { button, gate, guarded, kFitSquare, panel, programWords } from './parts.js';
 import { choose } from './rows.js';
 import { emit, on, store } from './store.js';
 import { fitThatMade, urdfOf } from './uses.js';
@@ -42,7 +42,7 @@ function fitAgain(offered) {
   const before = { ...made, meas: store.measurements.length ? [...store.measurements] : made.meas };
   const error = el('div', {});
   const fit = button(
-    'Fit the squareness and these scales alone',
+    kFitSquare,
     () =>
       guarded(error, async () => {
         const output = freeName(`${stemOf(before.machine)}-fitted`, '.xml');
@@ -149,12 +149,23 @@ function controlPanel() {
     filled_for = store.machine;
     if (format.value === 'urdf') fields.fill({ original: [''], tip: [''], ...urdfOf(store.machine) });
   };
+  /** The rotation_distance of X, Y and Z in a printer.cfg of the project, which the scales of Klipper need. */
+  const fillSteps = async (mine) => {
+    for (const { name } of store.files.filter((one) => /\.cfg$/i.test(one.name) && !one.name.includes('/'))) {
+      const words = await (await fetch(fileAddress(name))).text();
+      const found = ['x', 'y', 'z'].map(
+        (axis) => words.match(new RegExp(`^\\[stepper_${axis}\\][^[]*?^rotation_distance\\s*[:=]\\s*([\\d.]+)`, 'm'))?.[1],
+      );
+      if (fields === mine && found.every(Boolean) && !mine.values().steps) mine.fill({ steps: [found.join(',')] });
+    }
+  };
   on('rows', () => filled_for !== store.machine && fillOriginal());
   const now = gated(write, () => (format.value ? null : 'Choose the control or the format first'));
   format.addEventListener('change', () => {
     fields = format.value ? optionFields(`export ${format.value}`, ['machine', 'output']) : null;
     fillOriginal();
     options.replaceChildren(...(fields?.elements ?? []));
+    if (format.value === 'klipper') fillSteps(fields);
     error.replaceChildren();
     result.replaceChildren();
     now();

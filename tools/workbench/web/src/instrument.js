@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { el } from '../../../report/web/src/dom.js';
 import { freeName, run } from './api.js';
+import { kMakeOne } from './begin.js';
 import { option, optionFields } from './options.js';
 import { button, guarded, pageWords, panel } from './parts.js';
 
-export const kDeclareBed =
-  'A machine file for these touches declares the bed. If yours does not: for a new machine file, "Make one by type and travels", options of new, write bed:plane into the field "artefact". For the chosen machine file, "These rows cannot be read", "Declare it".';
+export const kDeclareBed = `A machine file for these touches declares the bed. If yours does not: for a new machine file, "${kMakeOne}" below, options of new, write bed:plane into the field "artefact". For the chosen machine file, "These rows cannot be read", "Declare it".`;
 
 /**
  * Imports a file by a kind of `vernier import` that needs no table of columns: at once where it needs no further options, else its

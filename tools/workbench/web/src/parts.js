@@ -43,6 +43,9 @@ const toolWords = (whole, names) =>
 /** The button beside the rules of the safety sheet. */
 export const kMeasuredTravel = 'Reduce the travel to the measured range';
 
+/** The button that fits what a printed square shows, under Add and under Export. */
+export const kFitSquare = 'Fit the squareness and these scales alone';
+
 /** The button that adds stations to a table; behind these words the axis and the distance. */
 export const kAddStations = 'Add stations: ';
 
@@ -71,7 +74,7 @@ export const programWords = (words) =>
       /fit a machine file of vernier new --errors square, or fit the machine file from before the last fit again with --hold "([^"]+)" --free (\S+)/g,
       'make a new machine file with "square" in the field "errors" and fit it, or fit the machine file from before the last fit again with $1 in the field "hold" and $2 in the field "free" of the options of fit',
     )
-    .replace(/ \(vernier set MACHINE --stations (\S+) -o NEW\)/g, ` (the button "${kAddStations}$1" under Diagnose, or in Add after a fit)`)
+    .replace(/ \(vernier set MACHINE --stations (\S+) -o NEW\)/g, ` (the button "${kAddStations}$1", in Add after a fit)`)
     .replace(
       / \(import table:? --set "([^"]+)"\)/g,
       ' under Project: press "read differently" beside the file, and write $1 into the field "set"',

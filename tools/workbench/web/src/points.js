@@ -28,7 +28,17 @@ export function pointFields({ names, axes }, typed, change) {
     return typed.get(name);
   };
   [...typed.keys()].filter((name) => !names.includes(name)).forEach((name) => typed.delete(name));
-  const read = button('Take these positions', () => change(), { id: 'take-points' });
+  const missing = el('p', { class: 'error', role: 'alert', hidden: '' });
+  const read = button(
+    'Take these positions',
+    () => {
+      const open = names.flatMap((name) => axes.filter((_, k) => !isNumber(known(name)[k])).map((axis) => `${axis.name} of ${name}`));
+      missing.hidden = !open.length;
+      missing.textContent = `No number yet: ${open.join(', ')}. (Z of a printed square: the height of the layer, such as 0.2.)`;
+      if (!open.length) change();
+    },
+    { id: 'take-points' },
+  );
   const row = (name) =>
     el(
       'tr',
@@ -74,5 +84,6 @@ export function pointFields({ names, axes }, typed, change) {
       el('tbody', {}, names.map(row)),
     ),
     el('div', { class: 'controls' }, read),
+    missing,
   );
 }
