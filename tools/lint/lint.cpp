@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "tools/fit/noise/contradicting_rows.h"
 #include "tools/format/columns.h"
@@ -98,6 +99,28 @@ void forgive_axes_that_others_move(const model::Machine& machine, const UsableFi
   }
 }
 
+/// A quantity that another file has determines its term there: the warning about it is removed.
+void forgive_quantities_that_others_have(const UsableFiles& usable, std::vector<LintedFile>& files) {
+  const auto lacks = [](const LintedFile& file, const std::string& word) {
+    return std::any_of(file.findings.begin(), file.findings.end(), [&](const LintFinding& finding) {
+      return finding.word == word && finding.meaning == kRecordOrHold;
+    });
+  };
+  std::set<std::string> words;
+  for (const std::size_t file : usable.at)
+    for (const LintFinding& finding : files[file].findings)
+      if (finding.meaning == kRecordOrHold) words.insert(finding.word);
+  for (const std::string& word : words) {
+    const bool all = std::all_of(usable.at.begin(), usable.at.end(),
+                                 [&](std::size_t file) { return lacks(files[file], word); });
+    if (all) continue;
+    for (const std::size_t file : usable.at)
+      std::erase_if(files[file].findings, [&](const LintFinding& finding) {
+        return finding.word == word && finding.meaning == kRecordOrHold;
+      });
+  }
+}
+
 /// Warns about measurement files without the directions of an axis that moves in them, beside files with
 /// them.
 void compare_directions(const model::Machine& machine, const UsableFiles& usable,
@@ -175,6 +198,7 @@ std::vector<LintedFile> lint_contents(const std::vector<std::string>& names,
   if (!machine) return list;
   const UsableFiles usable = usable_files(*machine, bytes, list);
   forgive_axes_that_others_move(*machine, usable, list);
+  forgive_quantities_that_others_have(usable, list);
   compare_directions(*machine, usable, list);
   look_for_contradictions(usable, list);
   return list;

@@ -325,7 +325,7 @@ class Look {
         findings_.warn(table_.header_line, name,
                        "a term of the machine file uses this column; without the column the quantity is 0 in "
                        "all rows, and the readings do not determine the term",
-                       "record this quantity, or exclude the term from the fit (--fix)");
+                       kRecordOrHold);
     for (const model::Input& input : machine_->inputs)
       if (table_.find(input.name) == nullptr)
         findings_.warn(table_.header_line, input.name,

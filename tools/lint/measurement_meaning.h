@@ -13,6 +13,9 @@ namespace vernier::lint {
 void look_at_meaning(const LintTable& table, const std::string& file, const model::Machine* machine,
                      LintFindings& findings);
 
+/// What to do about a term of the machine whose quantity has no column in the file.
+inline constexpr const char* kRecordOrHold = "record this quantity, or exclude the term from the fit (--fix)";
+
 /// Meaning of the warning about an axis that never moves in a file.
 inline constexpr const char* kAxisStands =
     "the readings do not distinguish the errors of this axis from those of the set-up";

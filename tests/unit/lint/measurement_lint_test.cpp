@@ -322,6 +322,27 @@ TEST(MeasurementLintOf, StationsAreProposedOnlyWithThreeReadingsForEachOfThem) {
   EXPECT_NE(lint("X Y Z", 4, "x[mm],y[mm],z[mm]").find("--stations X=25"), std::string::npos);
 }
 
+TEST(Lint, AQuantityThatAnotherFileHasDeterminesItsTermThere) {
+  const std::string machine =
+      R"xml(<machine name="m"><variables><static><bX value="0" unit="mm"/><bY value="0" unit="mm"/></static>
+      <machineaxes><X min="0" max="100"/><Y min="0" max="100"/></machineaxes></variables>
+      <transforms><sixdof X="X+bX*dirX" Y="Y+bY*dirY"/></transforms></machine>)xml";
+  const std::string x = "X[mm],dirX,Y[mm],x[mm],u[um]\n0,1,50,0,1\n100,1,50,100,1\n100,-1,50,100,1\n",
+                    y = "Y[mm],dirY,X[mm],y[mm],u[um]\n0,1,50,0,1\n100,1,50,100,1\n100,-1,50,100,1\n";
+  const auto named = [](const std::vector<LintedFile>& files, const std::string& word) {
+    return std::any_of(files.begin(), files.end(), [&](const LintedFile& file) {
+      return std::any_of(file.findings.begin(), file.findings.end(),
+                         [&](const LintFinding& finding) { return finding.word == word; });
+    });
+  };
+  const std::vector<LintedFile> one = lint_contents({"m.xml", "x.csv"}, {machine, x});
+  EXPECT_TRUE(named(one, "dirY"));
+  EXPECT_FALSE(named(one, "dirX"));
+  const std::vector<LintedFile> both = lint_contents({"m.xml", "x.csv", "y.csv"}, {machine, x, y});
+  EXPECT_FALSE(named(both, "dirX"));
+  EXPECT_FALSE(named(both, "dirY"));
+}
+
 TEST(Lint, AFileWithoutUBesideAFileWithUIsAWarning) {
   const std::string folder = testing::TempDir();
   const std::string with = folder + "/with_u.csv", without = folder + "/without_u.csv";
