@@ -134,9 +134,8 @@ std::string dense_points_remedy(const DensePoints& points) {
   if (points.one_column)
     return words +
            ". This line measures one column of the table only, and the other columns at more stations would "
-           "follow the noise of the other rows: diagnose and improve test a curve of more pieces for one "
-           "column "
-           "(positioning-error)";
+           "follow the noise of the other rows: diagnose and improve test a positioning error of more pieces "
+           "for this column";
   return fmt::format("{}; add stations to the table (vernier set MACHINE --stations {}={:.4g} -o NEW)", words,
                      points.axis, points.step);
 }
