@@ -289,6 +289,12 @@ TEST_F(ProbedBed, TheFitThatAnExportOffersMeasuresTheSquarenessAndBothScales) {
   EXPECT_THAT(said,
               HasSubstr("note: To measure squareness and scales with the distances of a printed square"));
   EXPECT_EQ(nlohmann::json::parse(text::read_file(folder + "/fit.json"))["fit_again"], offered);
+  // Held values of an earlier fit are no measurement: a button of the page fitted so, and the skew was a
+  // fifth too small.
+  ASSERT_EQ(run("vernier fit all-fit.xml square.csv -o junk.xml --hold table.X.X,table.Y.rZ --json fit.json"),
+            0)
+      << said;
+  EXPECT_THAT(said, HasSubstr("at values of an earlier fit that its readings did not determine"));
   // The numbers of another firmware have another meaning.
   EXPECT_EQ(run("vernier export klipper all-fit.xml -o no --touches bed.csv --steps 80,80,400"), 1) << said;
   EXPECT_THAT(said, HasSubstr("these look like steps per mm"));

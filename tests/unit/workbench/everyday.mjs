@@ -353,6 +353,9 @@ async function squareOfAPrinter(page) {
   await chosen(page, 'with_bed-fitted-2.xml');
   await words(page, '#fit-notes', 'These readings do not determine the squareness beside all other errors');
   assert.equal(await text(page, '#fit-square'), 'Fit the squareness and these scales alone');
+  // Fitted once more: what a fit holds are the nominal values of the first machine file, none of a fit before.
+  await page.click('#fit');
+  await chosen(page, 'with_bed-fitted-3.xml');
   await view(page, 'export');
   await page.choose('#export-format', 'klipper');
   await page.type('#view-export [data-option=touches]', 'printer_read.csv');
@@ -362,11 +365,11 @@ async function squareOfAPrinter(page) {
   await words(page, '#export-result', 'of with_bed.xml the other errors stay as they are');
   assert.ok(!/vernier (new|fit|import)|--[a-z]/.test(await text(page, '#export-result')), await text(page, '#export-result'));
   await page.click('#fit-again');
-  await chosen(page, 'with_bed-fitted-3.xml');
+  await chosen(page, 'with_bed-fitted-4.xml');
   await words(page, '#export-result', 'press "Write the files" again');
   await page.click('#do-export');
   await words(page, '#export-result', 'squareness XY: the files correct');
-  const folder_of = 'klipper-with_bed-fitted-3';
+  const folder_of = 'klipper-with_bed-fitted-4';
   const [, skew] = readFileSync(join(folder, folder_of, 'vernier.cfg'), 'utf8').match(/xy_skew = (\S+)/);
   // The readings have two decimals over 212 mm: 0.0001 rad.
   assert.ok(Math.abs(Number(skew) + 0.0016) < 1e-4, skew);
@@ -820,6 +823,15 @@ async function readDifferently(page, own) {
 async function pointsOfAMill(page) {
   await view(page, 'project');
   await page.choose('#machine', 'router.xml');
+  // Before a machine is chosen too.
+  await page.choose('#machine', '');
+  await page.drop([
+    { name: 'early.txt', text: 'Name X Y Z\nP1 2275.8380 5.7876 276.3618\nP2 2085.2766 -176.1341 353.5287\nP3 2001.1 -99.5 300.2\n' },
+  ]);
+  await page.choose('[data-of="early.txt"] select:has(option[value=tracker])', 'tracker');
+  await page.until(`document.querySelector('[data-of="early.txt"] #proposed-unit')`, 'x, y and z');
+  await page.choose('#machine', 'router.xml');
+  await words(page, '[data-of="early.txt"] #where-it-stood', 'Where did the machine stand at each point?');
   await page.drop([{ name: 'mill_points.txt', text: 'Punkt;X;Y;Z\nP1;2275,8380;5,7876;276,3618\nP2;2085,2766;-176,1341;353,5287\n' }]);
   const own = '[data-of="mill_points.txt"]';
   await words(page, `${own} #sheet-message`, 'choose "points of a laser tracker" in the field "read as"');

@@ -94,31 +94,40 @@ void print_causes(std::FILE* out, const diagnose::Diagnosis& diagnosis) {
   fmt::print(out, "\n");
 }
 
+/// The candidate with the most evidence that failed no test and is not in the stepwise model; nullptr: none
+/// has evidence, or the stepwise model has an effect with more.
+const diagnose::CandidateFinding* best_open(const diagnose::Diagnosis& d) {
+  const diagnose::CandidateFinding* best = nullptr;
+  double least = 0;  // score
+  for (const diagnose::CandidateFinding& one : d.candidates) {
+    if (one.accepted) least = std::max(least, one.score);
+    const bool open = !one.accepted && one.why_not.empty() && !one.add.empty();
+    if (open && one.score > 0 && (best == nullptr || one.score > best->score)) best = &one;
+  }
+  return best != nullptr && best->score > least ? best : nullptr;
+}
+
 /// What to do with effects that reduce the residual, if the verdict names no cause for all of it.
 void print_next_step(std::FILE* out, const diagnose::Diagnosis& d) {
   if (d.verdict != diagnose::Verdict::kUnexplained || d.candidates.empty()) return;
-  if (d.ladder.size() > 1)
-    fmt::print(
-        out,
-        "next: the option --machine-out NEW writes the machine file with the {} of the stepwise model, "
-        "fitted; the rest of the residual has no name in the catalogue\n",
-        d.ladder.size() == 2 ? "effect" : fmt::format("{} effects", d.ladder.size() - 1));
-  else if (const auto first = std::find_if(d.candidates.begin(), d.candidates.end(),
-                                           [](const diagnose::CandidateFinding& one) {
-                                             return one.score > 0 && one.why_not.empty() && !one.add.empty();
-                                           });
-           first == d.candidates.end())
-    fmt::print(
-        out,
-        "next: no candidate has evidence (a score above 0, and no failed test): measure again, or find "
-        "the cause outside the catalogue; adding a candidate is no explanation\n");
-  else
+  if (const diagnose::CandidateFinding* const best = best_open(d))
     fmt::print(
         out,
         "next: to try the candidate \"{}\", vernier add '{}' MACHINE -o NEW, then vernier fit NEW MEAS -o "
         "FITTED; keep it only if the residuals of the check rows divided by their standard uncertainty "
         "decrease (vernier fit prints their rms)\n",
-        first->candidate.spoken, first->add);
+        best->candidate.spoken, best->add);
+  else if (d.ladder.size() > 1)
+    fmt::print(
+        out,
+        "next: the option --machine-out NEW writes the machine file with the {} of the stepwise model, "
+        "fitted; the rest of the residual has no name in the catalogue\n",
+        d.ladder.size() == 2 ? "effect" : fmt::format("{} effects", d.ladder.size() - 1));
+  else
+    fmt::print(
+        out,
+        "next: no candidate has evidence (a score above 0, and no failed test): measure again, or find "
+        "the cause outside the catalogue; adding a candidate is no explanation\n");
 }
 
 /// Residuals of the machine of the last step.

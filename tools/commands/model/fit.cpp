@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <set>
 
 #include "tools/commands/command.h"
 #include "tools/commands/other_readings.h"
@@ -25,6 +26,7 @@
 #include "tools/model/machine_reader.h"
 #include "tools/model/machine_writer.h"
 #include "tools/model/measurement.h"
+#include "tools/model/parameters.h"
 #include "tools/results/residual_csv.h"
 #include "tools/results/results.h"
 #include "tools/simulate/corrected.h"
@@ -185,6 +187,29 @@ fit::Prior prior_of(const std::string& text) {
   return {text.substr(0, at), *std};
 }
 
+/// Held parameters with a value of an earlier fit that its readings did not determine: these values are no
+/// measurement, and this fit takes them as exact. Empty: none.
+std::string held_without_data(const model::Machine& machine, const fit::FitResult& result) {
+  if (!machine.fitted) return {};
+  const model::FitRecord& record = *machine.fitted;
+  std::set<std::string> free, held;
+  for (const fit::ParameterEstimate& one : result.estimates) free.insert(one.name);
+  for (std::size_t i = 0; i < std::min(record.parameters.size(), record.origins.size()); ++i) {
+    const std::string& name = record.parameters[i];
+    if (free.contains(name) || name.starts_with("BaseShift") || name.starts_with("ToolShift")) continue;
+    const bool moved = static_cast<Eigen::Index>(i) < record.values.size() &&
+                       record.values[static_cast<Eigen::Index>(i)] != 0;
+    if (moved && record.origins[i] != fit::origin_name(fit::Origin::kData))
+      held.insert(model::without_station(name));
+  }
+  if (held.empty()) return {};
+  return fmt::format(
+      "the fit holds {} at values of an earlier fit that its readings did not determine: begin with the "
+      "machine "
+      "file from before that fit, where they are nominal",
+      fmt::join(held, ", "));
+}
+
 /// True if the survey of a machine with touched objects has distances between points: a printed square.
 bool has_square(const model::Machine& machine, const model::Measurement& m) {
   return !machine.artefacts.empty() && std::ranges::any_of(m.observations, [](const model::Observation& one) {
@@ -244,8 +269,8 @@ void run_fit(const FitArguments& arguments) {
   if (!result.absurd.empty())
     throw text::LimitNotMet(result.absurd + "; nothing is written" + (tool.empty() ? "" : ". ") + tool);
   nlohmann::ordered_json json = results::fit_json(result, m);
-  for (const std::string& note :
-       {tool, rows, other_zero_of_joint(machine, m, result), readings_of_one_weight(m)}) {
+  for (const std::string& note : {tool, rows, other_zero_of_joint(machine, m, result),
+                                  readings_of_one_weight(m), held_without_data(machine, result)}) {
     if (note.empty()) continue;
     json["notes"].push_back(note);
     fmt::print(stderr, "note: {}\n", note);

@@ -12,6 +12,7 @@ import { along, choose, compared, loadRows, measured, setResiduals, subject } fr
 import { scatter } from './scatter.js';
 import { emit, on, store } from './store.js';
 import { termPanel } from './term.js';
+import { beforeFits } from './uses.js';
 
 const { steps } = store;
 
@@ -52,7 +53,9 @@ function notesOfFit(machine, label, options, notes, again) {
       el(
         'div',
         { class: 'controls' },
-        button(kFitSquare, () => guarded(box, () => fitInto(machine, 'squareness and scales alone', again)), { id: 'fit-square' }),
+        button(kFitSquare, () => guarded(box, () => fitInto(beforeFits(machine), 'squareness and scales alone', again)), {
+          id: 'fit-square',
+        }),
       ),
     );
   const denser = stationButtons(notes.join(' '), document.getElementById('add-error'));

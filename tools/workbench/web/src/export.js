@@ -8,7 +8,7 @@ import { optionFields } from './options.js';
 import { button, gate, guarded, kFitSquare, panel, programWords } from './parts.js';
 import { choose } from './rows.js';
 import { emit, on, store } from './store.js';
-import { fitThatMade, urdfOf } from './uses.js';
+import { beforeFits, fitThatMade, urdfOf } from './uses.js';
 
 const kNoMachine = 'Choose a machine at the top first';
 const stemOf = (name) => name.replace(/.*\//, '').replace(/\.[^.]*$/, '');
@@ -39,7 +39,7 @@ function fitAgain(offered) {
   const made = offered && fitThatMade(store.machine);
   if (!made) return null;
   // The chosen measurements may be those of the last fit, read again with their uncertainties.
-  const before = { ...made, meas: store.measurements.length ? [...store.measurements] : made.meas };
+  const before = { machine: beforeFits(made.machine), meas: store.measurements.length ? [...store.measurements] : made.meas };
   const error = el('div', {});
   const fit = button(
     kFitSquare,

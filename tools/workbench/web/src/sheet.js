@@ -46,15 +46,15 @@ function pointsWithoutHeadings(preview) {
 
 /**
  * The columns of points without positions of the axes, as a tracker writes them (Name, X, Y, Z): [[column, {use, name, unit}]];
- * empty: not such a table. Of a machine with axes of these names the user must have said that it is one (`stated`).
+ * empty: not such a table. Without a machine, or of a machine with axes of these names, the user must have said that it is one (`stated`).
  */
 function pointsOfATracker(preview, axes, stated = false) {
   const named = (name) => !stated && axes.some((axis) => axis.name.toLowerCase() === name.toLowerCase());
-  if (axes.length && !preview.workbook && preview.heading_line == null && !['x', 'y', 'z'].some(named))
-    return pointsWithoutHeadings(preview);
+  const asked = axes.length > 0 || stated;
+  if (asked && !preview.workbook && preview.heading_line == null && !['x', 'y', 'z'].some(named)) return pointsWithoutHeadings(preview);
   const xyz = preview.columns.map((one, k) => [k, one]).filter(([, one]) => /^[xyz]$/i.test(one.name));
   const rest = preview.columns.length - xyz.length;
-  if (!axes.length || preview.workbook || xyz.length !== 3 || rest > 2 || preview.columns.some((one) => named(one.name))) return [];
+  if (!asked || preview.workbook || xyz.length !== 3 || rest > 2 || preview.columns.some((one) => named(one.name))) return [];
   const names = preview.columns.map((one, k) => [k, one]).filter(([, one]) => kPointName.test(one.name));
   return [
     ...xyz.map(([k, one]) => [k, { use: 'column', name: one.name.toLowerCase(), unit: one.unit || kUsualUnit }]),
@@ -605,7 +605,7 @@ export async function importSheet(box, name, handOver, asks = false, earlier = n
   }
   // A machine that was chosen after the table was dropped has axes to compare with.
   on('rows', async () => {
-    if (axes.length || !store.machine || said.size || !box.querySelector('#sheet-columns')) return;
+    if (axes.length || !store.machine || !box.querySelector('#sheet-columns')) return;
     axes = await axesOf(store.machine);
     await draw();
   });

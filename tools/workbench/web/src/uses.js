@@ -73,6 +73,15 @@ export function fitThatMade(name) {
   const [machine, ...meas] = commandThatMade(name, /^fit$/)?.words ?? [];
   return meas.length && [machine, ...meas].every(stored) ? { machine, meas } : null;
 }
+/** The machine file before all fits of which a machine file is the last: a parameter that a further fit holds keeps no value of them. */
+export function beforeFits(name) {
+  for (let steps = 0; steps < store.history.length; ++steps) {
+    const made = fitThatMade(name);
+    if (!made) break;
+    name = made.machine;
+  }
+  return name;
+}
 /** The description of the robot of which the history made a machine file: {original, tip}, words of the options; null: none. */
 export function urdfOf(machine) {
   for (let file = machine, steps = 0; file && steps < store.history.length; ++steps) {
