@@ -98,6 +98,15 @@ async function addStations(words) {
   const output = freeName(`${unfitted(before)}-stations`, '.xml');
   await run({ command: 'set', machine: before, stations: [words], output });
   await fitInto(output, `with stations ${words}`);
+  document
+    .getElementById('fit-notes')
+    .append(
+      el(
+        'p',
+        { class: 'note' },
+        'Keep the stations unless the rms of the held-out rows is larger by more than a tenth with them; otherwise press "Take the last step back".',
+      ),
+    );
 }
 
 /** A button for each table that a text of a command names as too coarse. */

@@ -77,7 +77,10 @@ export const programWords = (words) =>
     .replace(/ \(vernier set MACHINE --stations (\S+) -o NEW\)/g, ` (the button "${kAddStations}$1", in Add after a fit)`)
     .replace(
       / \(import table:? --set "([^"]+)"\)/g,
-      ' under Project: press "read differently" beside the file, and write $1 into the field "set"',
+      (whole, column) =>
+        ` under Project: press "read differently" beside the file, and write ${column} into the field "set"${
+          column.startsWith('u[') ? ' (of touches of a printer: its number in µm into the field "u")' : ''
+        }`,
     )
     .replace(
       /fit --hold NAME, such as --hold "([^"]+)"/g,
