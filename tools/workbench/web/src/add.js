@@ -3,7 +3,7 @@ import { choice, el, table, tiles } from '../../../report/web/src/dom.js';
 import { number, printed } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, getJson, postBlob, postJson, refresh, run } from './api.js';
 import { fallingFigure } from './charts.js';
-import { button, gate, guarded, kAddStations, kFitSquare, needsSubject, panel, programWords, showError } from './parts.js';
+import { button, gate, guarded, kAddStations, kFitSquare, kOfSquare, needsSubject, panel, programWords, showError } from './parts.js';
 import { moreOptions } from './options.js';
 import { parameterPanel } from './parameters.js';
 import { redrawAll } from './plot.js';
@@ -16,8 +16,7 @@ import { beforeFits } from './uses.js';
 
 const { steps } = store;
 
-/** How the note of a fit begins whose readings leave the squareness open; what the page says instead, beside its button. */
-const kOfSquare = 'To measure squareness and scales ';
+/** Beside the button that fits a printed square. */
 const kSquareAlone =
   'These readings do not determine the squareness beside all other errors. If the distances of a printed square were measured, they determine the squareness and the scales of X and Y alone:';
 

@@ -5,7 +5,7 @@ import { number } from '../../../report/web/src/data.js';
 import { fileAddress, freeName, run } from './api.js';
 import { reportHead } from './handover.js';
 import { optionFields } from './options.js';
-import { button, gate, guarded, kFitSquare, panel, programWords } from './parts.js';
+import { button, gate, guarded, kFitSquare, kOfSquare, panel, programWords } from './parts.js';
 import { choose } from './rows.js';
 import { emit, on, store } from './store.js';
 import { beforeFits, fitThatMade, urdfOf } from './uses.js';
@@ -69,11 +69,7 @@ function outcome(box, { text, result }, files, words) {
   const lines = programWords(text)
     .split('\n')
     .filter(
-      (line) =>
-        line.trim() &&
-        !files.includes(line.trim()) &&
-        !line.startsWith('left out: ') &&
-        !(again && line.startsWith('To measure squareness and scales ')),
+      (line) => line.trim() && !files.includes(line.trim()) && !line.startsWith('left out: ') && !(again && line.startsWith(kOfSquare)),
     );
   box.replaceChildren(
     left.length

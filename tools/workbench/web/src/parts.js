@@ -43,6 +43,9 @@ const toolWords = (whole, names) =>
 /** The button beside the rules of the safety sheet. */
 export const kMeasuredTravel = 'Reduce the travel to the measured range';
 
+/** How the sentence begins that offers the fit of a printed square in the words of the terminal. */
+export const kOfSquare = 'To measure squareness and scales ';
+
 /** The button that fits what a printed square shows, under Add and under Export. */
 export const kFitSquare = 'Fit the squareness and these scales alone';
 
