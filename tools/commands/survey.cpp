@@ -83,6 +83,10 @@ diagnose::Diagnosis diagnose_and_estimate_noise(const std::string& text, const m
   return diagnosis;
 }
 
+void add_sentences(std::string& explanation, const std::vector<std::string>& sentences) {
+  for (const std::string& sentence : sentences) explanation += " " + sentence;
+}
+
 std::vector<std::string> noise_sentences(const std::vector<fit::FileNoise>& noise) {
   std::vector<std::string> list;
   for (const fit::FileNoise& one : noise) list.push_back(one.sentence() + ".");

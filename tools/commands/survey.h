@@ -49,6 +49,9 @@ diagnose::Diagnosis diagnose_and_estimate_noise(const std::string& text, const m
                                                 model::Measurement& rows, std::vector<fit::FileNoise>& noise,
                                                 const diagnose::DiagnoseOptions& options);
 
+/// Adds sentences to an explanation.
+void add_sentences(std::string& explanation, const std::vector<std::string>& sentences);
+
 /// Sentences about the estimates of u, for an explanation.
 std::vector<std::string> noise_sentences(const std::vector<fit::FileNoise>& noise);
 

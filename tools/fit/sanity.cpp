@@ -386,9 +386,6 @@ WorstReading worst_reading(const model::Measurement& measurement, const Eigen::V
 
 std::string unbelievable_u(const model::Measurement& measurement, const Eigen::VectorXd& residual) {
   constexpr double kUnbelievable = 300;  // a model that misses an effect leaves tens of times u
-  // A fit that diverged leaves more than that of a true u: only a u is in doubt that no instrument has, such
-  // as up to 50 um stated as mm in a column of um.
-  constexpr double kSmallest_um = 0.05;
   std::vector<std::vector<double>> ratios(measurement.files.size()), lengths(measurement.files.size());
   for (std::size_t i = 0; i < measurement.observations.size(); ++i) {
     const model::Observation& one = measurement.observations[i];
@@ -401,7 +398,8 @@ std::string unbelievable_u(const model::Measurement& measurement, const Eigen::V
     if (ratios[file].empty()) continue;
     const double times = maths::median(std::move(ratios[file])),
                  u_um = maths::kUmPerMm * maths::median(std::move(lengths[file]));
-    if (times > kUnbelievable && u_um < kSmallest_um)
+    // A fit that diverged leaves hundreds of times a true u too.
+    if (times > kUnbelievable && u_um < kSmallestU_um)
       return fmt::format(
           "the residual of {} is {:.2g} times the standard uncertainty u of its readings ({:.2g} um): "
           "probably this u is in another unit (5 um = 0.005 mm). Correct u, or remove it",

@@ -18,6 +18,10 @@ inline constexpr double kAbsurdResidual = 0.02;
 /// (for example a wrong unit) are tested on the nominal machine.
 inline constexpr double kFarOff = 0.05;
 
+/// Standard uncertainty of a length reading, um, that no instrument reaches: a smaller u is in another unit,
+/// such as up to 50 um stated as mm in a column of um.
+inline constexpr double kSmallestU_um = 0.05;
+
 /// Returns the reading with the largest residual. `check`: true selects the check rows; false selects the fit
 /// rows.
 WorstReading worst_reading(const model::Measurement& measurement, const Eigen::VectorXd& residual,
@@ -45,7 +49,7 @@ LikelyMistake likely_mistake(const model::Machine& machine, const model::Measure
 std::string missing_set_up(const model::Machine& machine, const model::Measurement& rows, double misfit_mm);
 
 /// Returns a sentence if the residual of a file is hundreds of times the standard uncertainty u of its
-/// readings, and this u is below 0.05 um: probably u is in another unit. Otherwise an empty text.
+/// readings, and this u is below kSmallestU_um: probably u is in another unit. Otherwise an empty text.
 std::string unbelievable_u(const model::Measurement& measurement, const Eigen::VectorXd& residual);
 
 /// Tests for a collapsed machine: touches of unknown points agree best if the machine does not move the tool

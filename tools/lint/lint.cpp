@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <map>
 
 #include "tools/fit/noise/contradicting_rows.h"
 #include "tools/format/columns.h"
@@ -84,6 +84,15 @@ UsableFiles usable_files(const model::Machine& machine, const std::vector<std::s
   return usable;
 }
 
+/// Removes the findings about a word that have this meaning.
+void forget(const UsableFiles& usable, const std::string& word, const char* meaning,
+            std::vector<LintedFile>& files) {
+  for (const std::size_t file : usable.at)
+    std::erase_if(files[file].findings, [&](const LintFinding& finding) {
+      return finding.word == word && finding.meaning == meaning;
+    });
+}
+
 /// An axis that stands in one file and moves in another one is measured: the warning about it is removed.
 void forgive_axes_that_others_move(const model::Machine& machine, const UsableFiles& usable,
                                    std::vector<LintedFile>& files) {
@@ -91,34 +100,18 @@ void forgive_axes_that_others_move(const model::Machine& machine, const UsableFi
     const bool moves = std::any_of(usable.rows.begin(), usable.rows.end(), [&](const model::Measurement& m) {
       return m.states.axis[axis].maxCoeff() > m.states.axis[axis].minCoeff();
     });
-    if (!moves) continue;
-    for (const std::size_t file : usable.at)
-      std::erase_if(files[file].findings, [&](const LintFinding& finding) {
-        return finding.word == machine.axes[axis].name && finding.meaning == kAxisStands;
-      });
+    if (moves) forget(usable, machine.axes[axis].name, kAxisStands, files);
   }
 }
 
 /// A quantity that another file has determines its term there: the warning about it is removed.
 void forgive_quantities_that_others_have(const UsableFiles& usable, std::vector<LintedFile>& files) {
-  const auto lacks = [](const LintedFile& file, const std::string& word) {
-    return std::any_of(file.findings.begin(), file.findings.end(), [&](const LintFinding& finding) {
-      return finding.word == word && finding.meaning == kRecordOrHold;
-    });
-  };
-  std::set<std::string> words;
+  std::map<std::string, std::size_t> lacking;  // number of files without the quantity
   for (const std::size_t file : usable.at)
     for (const LintFinding& finding : files[file].findings)
-      if (finding.meaning == kRecordOrHold) words.insert(finding.word);
-  for (const std::string& word : words) {
-    const bool all = std::all_of(usable.at.begin(), usable.at.end(),
-                                 [&](std::size_t file) { return lacks(files[file], word); });
-    if (all) continue;
-    for (const std::size_t file : usable.at)
-      std::erase_if(files[file].findings, [&](const LintFinding& finding) {
-        return finding.word == word && finding.meaning == kRecordOrHold;
-      });
-  }
+      if (finding.meaning == kRecordOrHold) ++lacking[finding.word];
+  for (const auto& [word, count] : lacking)
+    if (count < usable.at.size()) forget(usable, word, kRecordOrHold, files);
 }
 
 /// Warns about measurement files without the directions of an axis that moves in them, beside files with

@@ -6,6 +6,7 @@
 
 #include "tools/commands/command.h"
 #include "tools/commands/measure/import_kinds.h"
+#include "tools/fit/sanity.h"
 #include "tools/import/logs/printer_file.h"
 #include "tools/maths/factors.h"
 #include "tools/model/artefact.h"
@@ -43,16 +44,13 @@ const char* name_of(importer::PrinterFile::Kind kind) {
 
 /// Standard uncertainty of a touch, um: "5" (um), "5 um" or "0.005 mm".
 double stated_u_um(const std::string& words) {
-  // Outside these limits the number was in another unit: no printer touches so well or so badly.
-  constexpr double kLeast_um = 0.05, kMost_mm = 1;
-  const auto unit_at = words.find_first_of("um");
-  const auto number = text::parse_number(words.substr(0, unit_at));
-  const auto mm = number && unit_at == std::string::npos ? std::optional(*number / maths::kUmPerMm)
-                                                         : model::length_in_mm(words);
+  constexpr double kMost_mm = 1;  // no printer touches so badly: the number was in another unit
+  const auto bare = text::parse_number(words);
+  const auto mm = bare ? std::optional(*bare / maths::kUmPerMm) : model::length_in_mm(words);
   if (!mm || !(*mm > 0) || *mm > kMost_mm)
     throw text::InputError("--u " + words + ": of the form 5 (um), 5um or 0.005mm, at most 1 mm");
   const double um = *mm * maths::kUmPerMm;
-  if (um < kLeast_um)
+  if (um < fit::kSmallestU_um)
     throw text::InputError(
         fmt::format("--u {}: a touch of a printer is not as accurate as {:g} um. A number without unit is in "
                     "um: for {:g} mm state --u {:g}",

@@ -253,8 +253,7 @@ std::string note_without_directions(const importer::ImportTable& table, const mo
   if (missing.empty()) return {};
   return fmt::format(
       "the rows have no directions of the motion ({}), and a fit needs them for a backlash: if the rows are "
-      "in "
-      "the order of the measurement, import the file again with the directions (option --directions "
+      "in the order of the measurement, import the file again with the directions (option --directions "
       "from-order of vernier import)",
       text::joined(missing, ", "));
 }

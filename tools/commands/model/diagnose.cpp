@@ -149,10 +149,10 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   Progress progress("diagnose");
   options.progress = [&](double fraction, const std::string& step) { progress.update(fraction, step); };
   diagnose::Diagnosis diagnosis = diagnose_and_estimate_noise(text, machine, m, noise, options);
-  for (const std::string& sentence : noise_sentences(noise)) diagnosis.explanation += " " + sentence;
   const StationAdvice stations = station_advice(diagnosis, machine, m);
-  for (const std::string& sentence : stations.sentences) diagnosis.explanation += " " + sentence;
-  for (const std::string& sentence : column_sentences) diagnosis.explanation += " " + sentence;
+  add_sentences(diagnosis.explanation, noise_sentences(noise));
+  add_sentences(diagnosis.explanation, stations.sentences);
+  add_sentences(diagnosis.explanation, column_sentences);
   diagnosis.next_measurement = plan::advice_for(text, machine, m, diagnosis, options.effects);
   const nlohmann::ordered_json json = results::diagnosis_json(diagnosis, m);
   if (!arguments.output.empty()) {

@@ -123,6 +123,7 @@ struct NewStations {
 /// of the last fit is about the former stations, and is removed.
 std::vector<NewStations> take_stations(std::string& text, const SetArguments& arguments) {
   std::vector<NewStations> list;
+  if (!arguments.stations.empty()) text = model::without_fit_record(text);
   for (const std::string& words : arguments.stations) {
     const model::Machine machine = model::parse_machine(text, arguments.machine);
     std::vector<create::PlannedAxis> axes;
@@ -132,7 +133,7 @@ std::vector<NewStations> take_stations(std::string& text, const SetArguments& ar
     const std::size_t index = *machine.find_axis(planned.name);
     const model::Table table = exchange::table_at(machine, index, planned.stations);
     list.push_back({planned.name, machine.table_of(index)->stations.size(), table.stations.size()});
-    text = exchange::set_table(model::without_fit_record(text), machine, table);
+    text = exchange::set_table(text, machine, table);
   }
   return list;
 }

@@ -205,8 +205,7 @@ std::string held_without_data(const model::Machine& machine, const fit::FitResul
   if (held.empty()) return {};
   return fmt::format(
       "the fit holds {} at values of an earlier fit that its readings did not determine: begin with the "
-      "machine "
-      "file from before that fit, where they are nominal",
+      "machine file from before that fit, where they are nominal",
       fmt::join(held, ", "));
 }
 

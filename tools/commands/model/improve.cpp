@@ -164,10 +164,9 @@ class Improver {
     Progress progress("diagnose");
     options.progress = [&](double share, const std::string& step) { progress.update(share, step); };
     diagnose::Diagnosis d = diagnose_and_estimate_noise(text_, machine_, rows_, noise_, options);
-    for (const std::string& sentence : column_sentences_) d.explanation += " " + sentence;
-    for (const std::string& sentence : noise_sentences(noise_)) d.explanation += " " + sentence;
-    for (const std::string& sentence : station_advice(d, machine_, rows_).sentences)
-      d.explanation += " " + sentence;
+    add_sentences(d.explanation, column_sentences_);
+    add_sentences(d.explanation, noise_sentences(noise_));
+    add_sentences(d.explanation, station_advice(d, machine_, rows_).sentences);
     d.next_measurement = plan::advice_for(text_, machine_, rows_, d, effects_);
     if (round == 0 && !d.end.absurd.empty()) throw text::LimitNotMet(d.end.absurd + "; nothing is written");
     last_ = results::diagnosis_json(d, rows_);

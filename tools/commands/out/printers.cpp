@@ -183,9 +183,8 @@ void require_touches(const exchange::Bed& bed, const PrinterArguments& arguments
         {arguments.common.machine, 0}, bed.name,
         "the fit took this plane as flat: touches of a probe beside the nozzle do "
         "not distinguish a bow of the bed from axes that are not straight. Give the touches (--touches "
-        "FILE), "
-        "and a few touches of the nozzle if possible (a second file for --touches); --bed none leaves the "
-        "bed out");
+        "FILE), and a few touches of the nozzle if possible (a second file for --touches); --bed none leaves "
+        "the bed out");
 }
 
 /// Errors by inputs, speed, travel since reversal and time: the files are those of one state.

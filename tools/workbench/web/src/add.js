@@ -77,26 +77,38 @@ export async function withReflector() {
   await fitInto(output, 'with a reflector at an unknown place');
 }
 
-/** Adds an effect to the machine that is chosen and fits it: before and after on the same scale. */
-export async function addEffect(effect, error) {
-  location.hash = '#add';
-  await guarded(error ?? document.getElementById('add-error'), async () => {
-    const before = store.machine;
-    if (steps.at(-1)?.machine !== before) await fitInto(before, 'the model, fitted');
-    const output = freeName(`${stemOf(before)}-added`, '.xml');
-    const { result } = await run({ command: 'add', effect, machine: store.machine, output });
-    await fitInto(output, `+ ${result.said ?? result.label}`);
-  });
-}
-
-/** Gives a table more stations in a new machine file, and fits it: before and after on the same scale. */
-async function addStations(words) {
-  location.hash = '#add';
+/**
+ * Changes the machine that is chosen, in a new file, and fits it: before and after on the same scale. `change`: a command and its
+ * options; `said(result)`: the name of the step.
+ */
+async function changeAndFit(stem, change, said) {
   const before = store.machine;
   if (steps.at(-1)?.machine !== before) await fitInto(before, 'the model, fitted');
-  const output = freeName(`${unfitted(before)}-stations`, '.xml');
-  await run({ command: 'set', machine: before, stations: [words], output });
-  await fitInto(output, `with stations ${words}`);
+  const output = freeName(stem(before), '.xml');
+  const { result } = await run({ ...change, machine: store.machine, output });
+  await fitInto(output, said(result));
+}
+
+/** Adds an effect. */
+export async function addEffect(effect, error) {
+  location.hash = '#add';
+  await guarded(error ?? document.getElementById('add-error'), () =>
+    changeAndFit(
+      (name) => `${stemOf(name)}-added`,
+      { command: 'add', effect },
+      (result) => `+ ${result.said ?? result.label}`,
+    ),
+  );
+}
+
+/** Gives a table more stations. */
+async function addStations(words) {
+  location.hash = '#add';
+  await changeAndFit(
+    (name) => `${unfitted(name)}-stations`,
+    { command: 'set', stations: [words] },
+    () => `with stations ${words}`,
+  );
   document
     .getElementById('fit-notes')
     .append(
